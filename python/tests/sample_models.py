@@ -13,6 +13,14 @@ from slipwise.models import Model, ModelFile
 
 SPEED = (-0.5, 1.5)
 YAW_RATE = (-1.2, 1.0)
+BODY: Mapping[str, object] = {
+    "speed": [-0.45, 1.35],
+    "yaw_rate": [-0.7, 0.6],
+    "acceleration": [0.5, 0.6],
+    "yaw_acceleration": [0.2, 0.4],
+    "held": [5.0, 4.0],
+    "seconds": 100.0,
+}
 
 
 @dataclass(frozen=True)
@@ -38,6 +46,7 @@ class Made:
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     speed: tuple[float, float] = SPEED
     yaw_rate: tuple[float, float] = YAW_RATE
+    body: Mapping[str, object] | None = field(default_factory=lambda: BODY)  # what the poses show
     good: bool = True
     sentence: str = (
         "The learned model misses by 0.1 m after 5 s, where the kinematic baseline misses by 0.4 m."
@@ -147,7 +156,12 @@ def make_model(made: Made) -> Model:
             },
         },
         "slip_disturbance": None if made.disturbance is None else _slip_disturbance(*made.disturbance),
-        "range": {"speed": list(made.speed), "yaw_rate": list(made.yaw_rate), "slope": 0.0},
+        "range": {
+            "speed": list(made.speed),
+            "yaw_rate": list(made.yaw_rate),
+            "slope": 0.0,
+            "body": made.body,
+        },
         "provenance": {
             "slipwise_version": "0.2.0",
             "logs": [{"path": made.log, "sha256": "ab" * 32}],

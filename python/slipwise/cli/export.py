@@ -33,13 +33,6 @@ class TargetName(StrEnum):
     all = "all"
 
 
-class Nav2(StrEnum):
-    """Whose parameter names MPPI gets."""
-
-    rolling = "rolling"
-    kilted = "kilted"
-
-
 def export(
     model: ModelFile,
     to: Annotated[
@@ -62,7 +55,36 @@ def export(
     min_turning_radius: Annotated[
         float | None, optional("METRES", "Of an Ackermann vehicle, by its geometry.")
     ] = None,
-    nav2: Annotated[Nav2, typer.Option("--nav2", help="Whose parameter names MPPI gets.")] = Nav2.rolling,
+    ros_distro: Annotated[
+        str | None,
+        typer.Option(
+            "--ros-distro",
+            "--nav2",
+            metavar="NAME",
+            envvar="ROS_DISTRO",
+            show_default=False,
+            help="Release of ROS that the file is for: humble, jazzy, kilted, lyrical, rolling.",
+        ),
+    ] = None,
+    update_rate: Annotated[float | None, optional("HZ", "Of the controller manager.")] = None,
+    planning_horizon: Annotated[
+        float, typer.Option(metavar="SECONDS", help="That MPPI plans ahead: time_steps times model_dt.")
+    ] = 2.8,
+    limits: Annotated[
+        bool, typer.Option("--limits", help="Write limits too: as far as the poses show the body.")
+    ] = False,
+    stamped_commands: Annotated[
+        bool | None,
+        typer.Option(
+            "--stamped-commands/--no-stamped-commands",
+            show_default=False,
+            help="Whether commands are TwistStamped.",
+        ),
+    ] = None,
+    omni: Annotated[bool, typer.Option("--omni", help="The robot drives sideways, too.")] = False,
+    small_alphas: Annotated[
+        bool, typer.Option("--small-alphas", help="Write AMCL's alphas that are below its default, too.")
+    ] = False,
     px4: Annotated[str | None, optional("VERSION", "Write for this PX4, such as 1.17.")] = None,
     ardupilot: Annotated[
         str | None, optional("VERSION", "Write for this ArduPilot Rover, such as 4.6.")
@@ -83,9 +105,9 @@ def export(
 
     \b
     Examples:
-      slipwise export model.yaml --to diff-drive -o diff_drive_controller.yaml
-      slipwise export model.yaml --to all -o config/ --wheel-separation 0.57
-      slipwise export commands.yaml --to mppi --nav2 kilted
+      slipwise export model.yaml --to diff-drive --ros-distro jazzy -o diff_drive_controller.yaml
+      slipwise export model.yaml --to all --ros-distro lyrical -o config/ --wheel-separation 0.57
+      slipwise export commands.yaml --to mppi --ros-distro kilted --limits
       slipwise export model.yaml --px4 1.17 -o rover.params
       slipwise export commands.yaml --ardupilot 4.6 --logged ATC_STR_RAT_FF=0.2
       slipwise export model.yaml --to c-header -o model.h --json -
@@ -105,7 +127,13 @@ def export(
         logged_separation_multiplier=logged_separation_multiplier,
         logged_radius_multiplier=logged_radius_multiplier,
         min_turning_radius=min_turning_radius,
-        nav2="kilted" if nav2 is Nav2.kilted else "rolling",
+        ros_distro=ros_distro or None,
+        update_rate=update_rate,
+        planning_horizon=planning_horizon,
+        limits=limits,
+        stamped_commands=stamped_commands,
+        omni=omni,
+        small_alphas=small_alphas,
         wheel_base=wheel_base,
         px4=px4,
         ardupilot=ardupilot,

@@ -28,6 +28,20 @@ class ChannelResponse:
     slow_fraction: LearnedNumber  # of the answer that follows by the slow lag
     slow_time_constant: LearnedNumber  # s; zero where there is no slow mode
 
+    held: float | None = None  # s, for which the log's inputs were held; None: the model does not say
+
+    @property
+    def doubt(self) -> str:
+        """Why the lag must not be handed on; empty where it may be."""
+        if self.held is None or self.mean_lag.value <= self.held:
+            return ""
+        if self.held == 0.0:
+            return f"a lag of {self.mean_lag.value:.3g} s was learned, but no command was held in the log"
+        return (
+            f"a lag of {self.mean_lag.value:.3g} s was learned, longer than commands were held in the log"
+            f" ({self.held:.3g} s): its end was never seen"
+        )
+
     @property
     def mean_lag(self) -> LearnedNumber:
         """The time constant of one lag that loses as much distance [s]."""
@@ -66,7 +80,7 @@ def actuator_of(model: Model) -> Actuator:
             f"the actuator model has {', '.join(unknown)}, which cannot be exported",
             advice="calibrate without it",
         )
-    numbers = LearnedNumbers(model.body)
+    numbers, body = LearnedNumbers(model.body), model.content.range.body
 
     def seconds(name: str) -> LearnedNumber:
         if name not in places:
@@ -85,6 +99,7 @@ def actuator_of(model: Model) -> Actuator:
             gain=plain(f"gain_{place}", 1.0),
             slow_fraction=plain(f"slow_fraction_{place}", 0.0),
             slow_time_constant=seconds(f"log_slow_time_constant_{place}"),
+            held=None if body is None else body.held[("v", "omega").index(place)],
         )
 
     return Actuator(channel("v"), channel("omega"), plain("clock_offset", 0.0))

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,8 +10,9 @@ import numpy as np
 from slipwise.errors import ModelError
 from slipwise.export.learned_number import LearnedNumbers
 from slipwise.export.options import ExportOptions
-from slipwise.export.parameter_file import Entry, Kept, ParameterFile, stated, yaml_value
+from slipwise.export.parameter_file import Entry, Kept, ParameterFile, for_release, stated
 from slipwise.export.reference_drive import learned_variances, motion_covariance, reference_drive
+from slipwise.export.ros_tables import AMCL
 from slipwise.models.model import Model
 
 UPDATE_DISTANCE = 0.25  # m, update_min_d: AMCL draws its noise again after this distance
@@ -24,13 +24,20 @@ _MEANING = (
     "translation from rotation [m^2/rad^2]",
     "sideways from translation",
 )
-_TWO_MODELS = """\
-The omnidirectional sample model is for any robot here: it moves particles as the odometry says, and it alone
-has sideways noise. It spreads them as the model does, on straight drives and on turns; where AMCL updates
-more often than after the distance or the angle below, it draws less. These are for the differential model,
-which spreads too little sideways and on arcs, and too much on turns on the spot:
-robot_model_type: "nav2_amcl::DifferentialMotionModel"
-"""
+_OF_DIFFERENTIAL = 4  # alphas that the differential sample model reads
+DEFAULT = 0.2  # of each alpha in Nav2
+_DIFFERENTIAL, _OMNI = "nav2_amcl::DifferentialMotionModel", "nav2_amcl::OmniMotionModel"
+_OMNI_NOTE = """\
+The omnidirectional sample model moves particles as the odometry says, and has sideways noise. Where AMCL
+updates more often than after the distance or the angle below, it draws less."""
+_DIFFERENTIAL_NOTE = """\
+The differential sample model spreads too little sideways and on arcs, and too much on turns on the spot:
+these lie between. Where AMCL updates more often than after the distance or the angle below, it draws less."""
+CAUTION = """\
+CAUTION: alphas far below AMCL's default of 0.2 leave its particles no room for what is in no odometry model:
+a wrong map, a kidnapped robot, a wheel that lifts. AMCL then loses the robot and does not find it again. What
+was learned is how noisy this odometry is, not how much AMCL needs: an alpha below the default is written with
+`--small-alphas` alone. Raise them again where the particles collapse while the scan does not fit the map."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +80,7 @@ def alphas(model: Model, horizon: float) -> Alphas:
 
 
 def amcl(model: Model, options: ExportOptions) -> ParameterFile:
-    """Return AMCL's noise parameters for its omnidirectional sample model; a comment has the differential's.
+    """Return AMCL's noise parameters for the sample model of the robot's kind.
 
     Raises:
         ModelError: the model was learned from commands, or noise cannot be stated.
@@ -84,31 +91,27 @@ def amcl(model: Model, options: ExportOptions) -> ParameterFile:
             advice="calibrate with `--input wheel`",
         )
     drive = reference_drive(model)
-    entries = _alphas(model, options.horizon, lambda found: found.omni)
-    other = _alphas(model, options.horizon, lambda found: found.differential)
-    unknown = [entry.why for entry in entries if isinstance(entry, Kept)]
-    if len(unknown) == len(entries):
+    alphas_learned = _alphas(model, options)
+    unknown = [entry.why for entry in alphas_learned if isinstance(entry, Kept)]
+    if len(unknown) == len(alphas_learned):
         raise ModelError(
             f"none of AMCL's alphas is known: {unknown[0]}", advice="calibrate with a longer log"
         )
+    entries = [
+        Entry(
+            ("robot_model_type",),
+            _OMNI if options.omni else _DIFFERENTIAL,
+            "the sample model that they are for",
+        ),
+        Entry(
+            ("update_min_d",), UPDATE_DISTANCE, "[m] AMCL's default; the alphas hold for this distance only"
+        ),
+        Entry(("update_min_a",), UPDATE_ANGLE, "[rad] AMCL's default; the alphas hold for this angle only"),
+        *(entry if options.small_alphas else _not_small(entry) for entry in alphas_learned),
+    ]
     return ParameterFile(
         node="amcl",
-        entries=[
-            Entry(
-                ("robot_model_type",),
-                "nav2_amcl::OmniMotionModel",
-                "the sample model that they are for",
-            ),
-            Entry(
-                ("update_min_d",),
-                UPDATE_DISTANCE,
-                "[m] AMCL's default; the alphas hold for this distance only",
-            ),
-            Entry(
-                ("update_min_a",), UPDATE_ANGLE, "[rad] AMCL's default; the alphas hold for this angle only"
-            ),
-            *entries,
-        ],
+        entries=for_release(entries, AMCL),
         notes=[
             (
                 "Names of Nav2's nav2_amcl, all versions. For odometry with the multipliers of\n"
@@ -116,21 +119,28 @@ def amcl(model: Model, options: ExportOptions) -> ParameterFile:
                 f"Noise as the model predicts it {options.horizon:g} s ahead, at {drive.speed:.3g} m/s and"
                 f" {drive.yaw_rate:.3g} rad/s."
             ),
-            _TWO_MODELS + "\n".join(_in_comment(entry) for entry in other),
+            _OMNI_NOTE if options.omni else _DIFFERENTIAL_NOTE,
+            CAUTION,
         ],
     )
 
 
-def _alphas(
-    model: Model, horizon: float, of_alphas: Callable[[Alphas], tuple[float, ...]]
-) -> list[Entry | Kept]:
+def _alphas(model: Model, options: ExportOptions) -> list[Entry | Kept]:
     numbers = LearnedNumbers(model)
-    found = learned_variances(model, lambda each: np.array(of_alphas(alphas(each, horizon))))
+    kind = "omni" if options.omni else "differential"
+    found = learned_variances(model, lambda each: np.array(getattr(alphas(each, options.horizon), kind)))
+    named = list(zip(found, _MEANING, strict=True))
     return [
         stated((f"alpha{i}",), number, meaning, numbers)
-        for i, (number, meaning) in enumerate(zip(found, _MEANING, strict=True), start=1)
+        for i, (number, meaning) in enumerate(named if options.omni else named[:_OF_DIFFERENTIAL], start=1)
     ]
 
 
-def _in_comment(entry: Entry | Kept) -> str:
-    return f"{entry.name}: {yaml_value(entry.value) if isinstance(entry, Entry) else entry.why}"
+def _not_small(entry: Entry | Kept) -> Entry | Kept:
+    if isinstance(entry, Kept) or not isinstance(entry.value, float) or entry.value >= DEFAULT:
+        return entry
+    return Kept(
+        entry.key,
+        f"learned {entry.value:.3g} ({entry.meaning}), below AMCL's default of {DEFAULT:g}:"
+        " --small-alphas writes it",
+    )

@@ -6,20 +6,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from slipwise.errors import ModelError
+from slipwise.export.body_limits import BodyLimits
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
+from slipwise.export.measured_limits import MeasuredLimits
 from slipwise.export.options import ExportOptions
-from slipwise.export.parameter_file import Entry, Kept, ParameterFile, stated
+from slipwise.export.parameter_file import Entry, Kept, ParameterFile, for_release, stated
 from slipwise.export.reference_drive import (
     learned_variances,
     motion_covariance,
     reference_drive,
     slip_density,
 )
+from slipwise.export.ros_tables import DIFF_DRIVE, checked_distro
 from slipwise.export.wheel_multipliers import WheelMultipliers, wheel_multipliers
 from slipwise.models.model import Model
 
-PUBLISH_RATE = 50.0  # Hz, the controller's default
-_SPEED = "[m/s] of the body, as far as the log went"
+PUBLISH_RATE = 50.0  # Hz, the controller's default where it has one
 UNMEASURED = 1.0e6  # variance of what wheels say nothing about: height, roll, pitch and their rates
 
 
@@ -39,19 +41,31 @@ def diff_drive(model: Model, options: ExportOptions) -> ParameterFile:
             "wheel multipliers need a model learned from wheel speeds, this one is from commands",
             advice="calibrate with `--input wheel`",
         )
+    distro = checked_distro(options.ros_distro, "diff_drive_controller")
     found = wheel_multipliers(model, options)
+    limits = _limits(model, distro) if options.limits else []
+    notes = [_names(options, distro), _left_over(found)]
     return ParameterFile(
         node="diff_drive_controller",
-        entries=[*_geometry(found, options, model), *_covariances(model, options), *_limits(model, found)],
-        notes=[_names(options), _left_over(found)],
+        entries=for_release(
+            [*_geometry(found, options, model), *_covariances(model, options, distro), *limits],
+            DIFF_DRIVE,
+            distro,
+        ),
+        notes=notes if options.limits else [*notes, _NO_LIMITS],
     )
 
 
-def _names(options: ExportOptions) -> str:
+_NO_LIMITS = """\
+Limits of speed are left as they are: a log shows how the robot was driven, not what it may do. `--limits`
+writes what the poses show."""
+
+
+def _names(options: ExportOptions, distro: str) -> str:
     separation, radius = options.logged_separation_multiplier, options.logged_radius_multiplier
     return (
-        "Names of ros2_controllers' diff_drive_controller for ROS 2 Jazzy and later; Humble also wants\n"
-        "linear.x.has_velocity_limits and angular.z.has_velocity_limits set to true.\n"
+        f"Names of ros2_controllers' diff_drive_controller for ROS 2 {distro.capitalize()}.\n"
+        "A running controller refuses multipliers and covariances: restart it with this file.\n"
         "The multipliers replace those that were in force while the log was recorded"
         f" (separation {separation:g}, radius {radius:g}).\n"
         "They change what the robot does with a command, too: calibrate from commands again afterwards."
@@ -89,20 +103,32 @@ def _geometry(found: WheelMultipliers, options: ExportOptions, model: Model) -> 
     ]
 
 
-def _covariances(model: Model, options: ExportOptions) -> list[Entry | Kept]:
+def _rate(options: ExportOptions, distro: str) -> tuple[float | None, list[Entry | Kept]]:
+    """Return how often odometry is published [Hz], and how the controller is told."""
+    if "publish_rate" not in DIFF_DRIVE.of_distro(distro):
+        return options.update_rate, []
+    rate = PUBLISH_RATE if options.update_rate is None else min(PUBLISH_RATE, options.update_rate)
+    return rate, [Entry(("publish_rate",), rate, "[Hz] the twist's covariance below is for this rate")]
+
+
+def _covariances(model: Model, options: ExportOptions, distro: str) -> list[Entry | Kept]:
     drive, numbers = reference_drive(model), LearnedNumbers(model)
     at, seconds = (drive.speed, drive.yaw_rate), options.horizon
     where = f"at {drive.speed:.3g} m/s and {drive.yaw_rate:.3g} rad/s"
-    twist = learned_variances(model, lambda each: slip_density(each, at, seconds) * PUBLISH_RATE)
+    rate, told = _rate(options, distro)
+    twist = learned_variances(model, lambda each: slip_density(each, at, seconds) * (rate or 1.0))
     pose = learned_variances(model, lambda each: motion_covariance(each, at, seconds).diagonal())
     return [
-        Entry(("publish_rate",), PUBLISH_RATE, "[Hz] the twist's covariance below is for this rate"),
-        _diagonal(
-            "twist_covariance_diagonal",
+        *told,
+        Kept((_TWIST,), _NO_RATE + _shown(twist))
+        if rate is None
+        else _diagonal(
+            _TWIST,
             twist,
             numbers,
-            f"[m^2/s^2, rad^2/s^2] {where}: the density of the slip noise times the rate, so that a\n"
-            f"filter that takes every message as new is as unsure after {seconds:g} s as the model is",
+            f"[m^2/s^2, rad^2/s^2] {where}: the density of the slip noise times\n"
+            f"the {rate:g} messages a second, so that a filter that takes each as new is as unsure after"
+            f" {seconds:g} s as the model is",
         ),
         _diagonal(
             "pose_covariance_diagonal",
@@ -112,6 +138,16 @@ def _covariances(model: Model, options: ExportOptions) -> list[Entry | Kept]:
             "so fuse the twist, or the pose as differences, never the pose itself",
         ),
     ]
+
+
+_TWIST = "twist_covariance_diagonal"
+_NO_RATE = """\
+since May 2026 odometry comes at the controller manager's update_rate, 100 to 1000 Hz, and the covariance
+of each message is in proportion to it: give --update-rate. For 1 Hz, x, y and yaw: """
+
+
+def _shown(planar: Sequence[LearnedNumber]) -> str:
+    return ", ".join(f"{number.value:.3g}" for number in planar)
 
 
 def _diagonal(
@@ -125,14 +161,23 @@ def _diagonal(
     return Entry((name,), [x, y, UNMEASURED, UNMEASURED, UNMEASURED, yaw], meaning)
 
 
-def _limits(model: Model, found: WheelMultipliers) -> list[Entry | Kept]:
-    span, numbers = model.content.range, LearnedNumbers(model)
-    fastest = found.yaw_gain * max(map(abs, span.yaw_rate))
-    turn = "[rad/s] of the body, as far as the log went, to the side where it went further"
+def _limits(model: Model, distro: str) -> list[Entry | Kept]:
+    numbers = LearnedNumbers(model)
+    measured = MeasuredLimits(model, BodyLimits(), numbers)
+    turn = measured.turn()
     named = (
-        ("linear.x.max_velocity", found.speed_gain * max(span.speed[1], 0.0), _SPEED),
-        ("linear.x.min_velocity", found.speed_gain * min(span.speed[0], 0.0), _SPEED),
-        ("angular.z.max_velocity", fastest, turn),
-        ("angular.z.min_velocity", fastest * -1.0, turn),
+        ("linear.x.max_velocity", measured.forward(), 1.0, "m/s"),
+        ("linear.x.min_velocity", measured.backward(), -1.0, "m/s"),
+        ("angular.z.max_velocity", turn, 1.0, "rad/s"),
+        ("angular.z.min_velocity", turn, -1.0, "rad/s"),
     )
-    return [stated((name,), number, meaning, numbers) for name, number, meaning in named]
+    entries: list[Entry | Kept] = [
+        Kept((name,), limit)
+        if isinstance(limit, str)
+        else Entry((name,), limit.number.value * sign, f"[{unit}] of the body, {limit.source}")
+        for name, limit, sign, unit in named
+    ]
+    asks = [name for name in DIFF_DRIVE.of_distro(distro) if name.endswith("has_velocity_limits")]
+    if all(isinstance(entry, Entry) for entry in entries):
+        entries += [Entry((name,), True, "without it the limits above have no effect") for name in asks]
+    return entries

@@ -68,6 +68,7 @@ def _file(
     line: Callable[[FirmwareParameter, float], str],
     origin: Sequence[str],
 ) -> FirmwareFile:
+    limits = numbers.limits_asked
     if version is None:
         raise ModelError(
             f"which version of {table.firmware} is it? The names of its parameters differ",
@@ -78,7 +79,14 @@ def _file(
         _comments([*origin, "", f"Parameters of {table.firmware} {version}, and of no other version."])
     )
     made.lines += _comments(["Read them before you load them: the vehicle drives by them."])
+    if not limits:
+        names = [parameter.name for parameter in parameters if parameter.limit]
+        made.lines += _comments(
+            ["", f"Limits are left as they are ({', '.join(names)}): --limits writes them."]
+        )
     for parameter in parameters:
+        if parameter.limit and not limits:
+            continue
         found = numbers.answer(parameter.quantity)
         why = found if isinstance(found, str) else numbers.numbers.objection(found.number)
         if why or isinstance(found, str):

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from slipwise.export.actuator import actuator_of
 from slipwise.export.body_limits import BodyLimits, body_limits, slip_gains, strictest
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
+from slipwise.export.measured_limits import Limit, MeasuredLimits
 from slipwise.export.options import ExportOptions
 from slipwise.export.wheel_multipliers import wheel_multipliers
 from slipwise.models.body_gains import body_twists, turning_twists
@@ -21,7 +22,6 @@ from slipwise.models.model import Model
 _FEEDBACK = (
     "exact where the log was driven by feed-forward alone (P and I at zero), too small a change otherwise"
 )
-_AS_FAR = "as far as the log went"
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +53,7 @@ class FirmwareNumbers:
         before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
         self._speed_gain, self._yaw_gain = behind[0] * before[0], behind[1] * before[1]
         self._limits: BodyLimits = body_limits(limits, behind, self.numbers)
+        self._measured = MeasuredLimits(model, self._limits, self.numbers)
 
     def answer(self, quantity: str) -> Answer:
         """Return a quantity of the table, or why the model has none."""
@@ -87,34 +88,37 @@ class FirmwareNumbers:
         reached = f"the {what} reached {self.numbers.text(found)} of the commanded"
         return Quantity(number, f"{logged[0]:g} was in force and {reached}; {_FEEDBACK}")
 
+    @property
+    def limits_asked(self) -> bool:
+        """Whether limits are to be written."""
+        return self._options.limits
+
     def _limit(self, found: Sequence[LearnedNumber], what: str) -> Answer:
         if not found:
             return f"this log shows no limit of the {what}"
         return Quantity(strictest(found, self.numbers), f"learned limit of the {what}")
 
-    def _top(self, reached: LearnedNumber, found: Sequence[LearnedNumber], what: str) -> Answer:
-        least = strictest([reached, *found], self.numbers)
-        return Quantity(least, f"{what} {_AS_FAR}" if least is reached else f"learned limit of the {what}")
+    @staticmethod
+    def _answer(limit: Limit | str) -> Answer:
+        return limit if isinstance(limit, str) else Quantity(limit.number, limit.source)
 
     def _top_speed(self) -> Answer:
-        reached = self._speed_gain * max(self._model.content.range.speed[1], 0.0)
-        return self._top(reached, self._limits.saturation_v, "speed")
+        return self._answer(self._measured.forward())
 
     def _top_yaw_rate(self) -> Answer:
-        reached = self._yaw_gain * max(map(abs, self._model.content.range.yaw_rate))
-        return self._top(reached, self._limits.saturation_omega, "yaw rate")
+        return self._answer(self._measured.turn())
 
     def _acceleration(self) -> Answer:
-        return self._limit(self._limits.slew_rate_up_v, "acceleration")
+        return self._answer(self._measured.acceleration())
 
     def _braking(self) -> Answer:
-        return self._limit(self._limits.slew_rate_down_v, "braking")
+        return self._answer(self._measured.braking())
 
     def _yaw_acceleration(self) -> Answer:
-        return self._limit(self._limits.slew_rate_up_omega, "yaw acceleration")
+        return self._answer(self._measured.yaw_acceleration())
 
     def _yaw_braking(self) -> Answer:
-        return self._limit(self._limits.slew_rate_down_omega, "yaw braking")
+        return self._answer(self._measured.yaw_braking())
 
     def _full_throttle_speed(self) -> Answer:
         if self._limits.saturation_v and "RO_MAX_THR_SPEED" not in self._options.logged:

@@ -25,6 +25,17 @@ _FACTORS = {
 }
 
 
+_LIMITS = {
+    "top_speed",
+    "top_yaw_rate",
+    "acceleration",
+    "braking",
+    "yaw_acceleration",
+    "yaw_braking",
+    "throttle_rate",
+}
+
+
 @dataclass(frozen=True)
 class FirmwareParameter:
     """One parameter of a firmware."""
@@ -35,6 +46,11 @@ class FirmwareParameter:
     since: Version  # the first version with this name and meaning
     until: Version | None = None  # the last one; None: it has not gone
     whole: bool = False  # the firmware holds an integer
+
+    @property
+    def limit(self) -> bool:
+        """Whether it bounds what the vehicle may do: written only where it is asked for."""
+        return self.quantity in _LIMITS
 
     @property
     def factor(self) -> float:

@@ -1,60 +1,69 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nav2's MPPI controller: how late the robot answers, how fast it may go, and how tightly it turns."""
+"""Nav2's MPPI controller: how late the robot answers, how tightly it turns, and limits on request."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from slipwise.errors import ModelError
-from slipwise.export.actuator import Actuator, actuator_of
+from slipwise.export.actuator import Actuator, ChannelResponse, actuator_of
 from slipwise.export.body_limits import Gains, body_limits, slip_gains
 from slipwise.export.learned_number import LearnedNumbers
-from slipwise.export.mppi_limits import Bound, dead_bands, limit_notes, with_limits
+from slipwise.export.measured_limits import Limit, MeasuredLimits
+from slipwise.export.mppi_limits import dead_bands, limit_notes
 from slipwise.export.options import ExportOptions
-from slipwise.export.parameter_file import Entry, Kept, ParameterFile, stated
+from slipwise.export.parameter_file import Entry, Kept, ParameterFile, for_release, stated
+from slipwise.export.ros_tables import MPPI, checked_distro, motion_model
 from slipwise.models.body_gains import body_twists, turning_twists
 from slipwise.models.model import Model
 
-CONTROLLER = "FollowPath"  # the name that Nav2's own parameter file gives the controller
-_NAMES = {
-    "rolling": "Names of Nav2's main branch since June 2026 (ROS 2 Rolling, pull request 6154): MPPI with\n"
-    "model_delay_* and motion models as plug-ins. For older releases export with `--nav2 kilted`.",
-    "kilted": "Names of Nav2 for ROS 2 Kilted and Jazzy: MPPI without model_delay_*.\n"
-    "For newer ones export with `--nav2 rolling`.",
-}
+LONGEST_DELAY = 0.25  # of the planning horizon; a longer one leaves the controller little to decide
+_CONTROLLER = MPPI.prefix.rstrip(".")
 
 
 def mppi(model: Model, options: ExportOptions) -> ParameterFile:
     """Return the parameters of Nav2's MPPI controller that the model determines.
 
     Raises:
-        ModelError: the model was learned from wheel speeds, which say nothing about commands.
+        ModelError: the model was learned from wheel speeds, which say nothing about commands, or no release
+            of ROS is named.
     """
     if model.content.input != "command":
         raise ModelError(
             "MPPI plans commands, and this model was not learned from commands",
             advice="calibrate with `--input command`",
         )
+    distro = checked_distro(options.ros_distro, "Nav2's MPPI")
     numbers, actuator, limits = LearnedNumbers(model.body), actuator_of(model), model.content.limits
     slip = slip_gains(numbers, body_twists(model))
     behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
     before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
     gains = (behind[0] * before[0], behind[1] * before[1])
-    bounds = _speeds(model, gains)
-    if options.nav2 == "kilted":
-        bounds |= _accelerations(actuator, model, gains)
+    measured = MeasuredLimits(model, body_limits(limits, behind, numbers), numbers)
     entries = [
-        *_kind(options),
-        *(_delays(actuator, numbers) if options.nav2 == "rolling" else ()),
-        *with_limits(bounds, body_limits(limits, behind, numbers), numbers),
-        *_turning(model, options, numbers),
+        *_kind(options, distro),
+        *_delays(actuator, numbers, options.planning_horizon),
+        *(_limits(model, measured, actuator, numbers) if options.limits else ()),
+        *_turning(model, options, numbers, distro),
         *dead_bands(limits, numbers),
+    ]
+    notes = [
+        f"Names of Nav2 for ROS 2 {distro.capitalize()}.",
+        _reached(gains, numbers),
+        *limit_notes(limits),
     ]
     return ParameterFile(
         node="controller_server",
-        entries=[replace(entry, key=(CONTROLLER, *entry.key)) for entry in entries],
-        notes=[_NAMES[options.nav2], _reached(gains, numbers), *limit_notes(limits)],
+        entries=for_release(
+            [replace(entry, key=(_CONTROLLER, *entry.key)) for entry in entries], MPPI, distro
+        ),
+        notes=notes if options.limits else [*notes, _NO_LIMITS],
     )
+
+
+_NO_LIMITS = """\
+Limits of speeds and accelerations (vx_max, wz_max, az_max, ...) are left as they are: a log shows how the
+robot was driven, not what it may do. `--limits` writes what the poses show."""
 
 
 def _reached(gains: Gains, numbers: LearnedNumbers) -> str:
@@ -72,69 +81,88 @@ def _reached(gains: Gains, numbers: LearnedNumbers) -> str:
     )
 
 
-def _kind(options: ExportOptions) -> list[Entry]:
-    ackermann = options.min_turning_radius is not None
-    if options.nav2 == "kilted":
-        return [Entry(("motion_model",), "Ackermann" if ackermann else "DiffDrive", "the kind of vehicle")]
-    name, plugin = ("ackermann", "Ackermann") if ackermann else ("diff_drive", "DiffDrive")
+def _kind(options: ExportOptions, distro: str) -> list[Entry]:
+    kind = "diff-drive" if options.min_turning_radius is None else "ackermann"
+    name, plugin = motion_model(kind, distro)
+    if not plugin:
+        return [Entry(("motion_model",), name, "the kind of vehicle")]
     return [
         Entry(("motion_model",), name, "the plug-in below"),
-        Entry((name, "plugin"), f"mppi::{plugin}MotionModel", "the kind of vehicle"),
+        Entry((name, "plugin"), plugin, "the kind of vehicle"),
     ]
 
 
-def _speeds(model: Model, gains: Gains) -> dict[str, list[Bound]]:
-    span, (speed, yaw) = model.content.range, gains
-    forth, back = speed * max(span.speed[1], 0.0), speed * min(span.speed[0], 0.0)
-    turn = "[rad/s] as far as the log went, to the side where it went further"
-    return {
-        "vx_max": [Bound(forth, "[m/s] as far as the log went")],
-        "vx_min": [Bound(back, "[m/s] as far as the log went")],
-        "wz_max": [Bound(yaw * max(map(abs, span.yaw_rate)), turn)],
-    }
-
-
-def _delays(actuator: Actuator, numbers: LearnedNumbers) -> list[Entry | Kept]:
+def _delays(actuator: Actuator, numbers: LearnedNumbers, horizon: float) -> list[Entry | Kept]:
     return [
-        stated(
-            (f"model_delay_{name}",),
-            channel.mean_delay,
-            f"[s] {numbers.text(channel.mean_delay)}: delay {channel.delay.value:.3g} and lag"
-            f" {channel.mean_lag.value:.3g}. MPPI has no lag, and a delay of\n"
-            "the same length loses the same distance",
-            numbers,
-        )
+        _delay(f"model_delay_{name}", channel, numbers, horizon)
         for name, channel in (("vx", actuator.v), ("wz", actuator.omega))
     ]
 
 
-def _accelerations(actuator: Actuator, model: Model, gains: Gains) -> dict[str, list[Bound]]:
-    """Return the ramps to the fastest speed that lose as much distance as the robot does by being late."""
-    span = model.content.range
-    late_v, late_omega = actuator.v.mean_delay, actuator.omega.mean_delay
-    if not (late_v.value > 0.0 and late_omega.value > 0.0):
-        return {}
-    ax = gains[0] * (max(map(abs, span.speed)) / 2.0) / late_v
-    az = gains[1] * (max(map(abs, span.yaw_rate)) / 2.0) / late_omega
-
-    def meaning(unit: str, late: float) -> str:
-        return (
-            f"[{unit}] the robot answers {late:.3g} s late, delay and lag together. A ramp of this slope\n"
-            "to the fastest of the log loses as much way"
+def _delay(name: str, channel: ChannelResponse, numbers: LearnedNumbers, horizon: float) -> Entry | Kept:
+    late = channel.mean_delay
+    if channel.doubt:
+        return Kept((name,), channel.doubt)
+    if late.value > LONGEST_DELAY * horizon:
+        return Kept(
+            (name,),
+            f"the robot answers {late.value:.3g} s late, more than a quarter of the {horizon:g} s that MPPI\n"
+            "plans ahead (time_steps times model_dt, --planning-horizon): it would have no say left",
         )
+    meaning = (
+        f"[s] {numbers.text(late)}: delay {channel.delay.value:.3g} and lag {channel.mean_lag.value:.3g}."
+        " MPPI has no lag, and a delay of\nthe same length loses the same distance"
+    )
+    return stated((name,), late, meaning, numbers)
 
-    return {
-        "ax_max": [Bound(ax, meaning("m/s^2", late_v.value))],
-        "ax_min": [Bound(ax * -1.0, "[m/s^2] as a ramp, like ax_max")],
-        "az_max": [Bound(az, meaning("rad/s^2", late_omega.value))],
+
+def _limits(
+    model: Model, measured: MeasuredLimits, actuator: Actuator, numbers: LearnedNumbers
+) -> list[Entry | Kept]:
+    """Return bounds of speeds as the poses show them, accelerations by the drive's limits or lateness."""
+    v, omega = _ramps(model, actuator, numbers)
+    found = {
+        "vx_max": (measured.forward(), 1.0, "m/s"),
+        "vx_min": (measured.backward(), -1.0, "m/s"),
+        "wz_max": (measured.turn(), 1.0, "rad/s"),
+        "ax_max": (measured.acceleration(*v), 1.0, "m/s^2"),
+        "ax_min": (measured.braking(*v), -1.0, "m/s^2"),
+        "az_max": (measured.yaw_acceleration(*omega), 1.0, "rad/s^2"),
     }
+    return [
+        Kept((name,), limit)
+        if isinstance(limit, str)
+        else stated((name,), limit.number * sign, f"[{unit}] {limit.source}", numbers)
+        for name, (limit, sign, unit) in found.items()
+    ]
 
 
-def _turning(model: Model, options: ExportOptions, numbers: LearnedNumbers) -> list[Entry | Kept]:
+def _ramps(model: Model, actuator: Actuator, numbers: LearnedNumbers) -> list[list[Limit]]:
+    """Return the ramps to the fastest speed that lose as much way as the robot does by being late."""
+    body = model.content.range.body
+    ramps: list[list[Limit]] = []
+    for channel, name in ((actuator.v, "speed"), (actuator.omega, "yaw_rate")):
+        late = channel.mean_delay
+        fastest = 0.0 if body is None else max(map(abs, getattr(body, name)))
+        if channel.doubt or not late.value > 0.0 or not fastest > 0.0:
+            ramps.append([])
+            continue
+        source = (
+            f"the robot answers {late.value:.3g} s late, delay and lag together: a ramp of this slope to the"
+            " fastest of the log loses as much way"
+        )
+        ramps.append([Limit(numbers.exactly(fastest / 2.0) / late, source)])
+    return ramps
+
+
+def _turning(
+    model: Model, options: ExportOptions, numbers: LearnedNumbers, distro: str
+) -> list[Entry | Kept]:
     radius = options.min_turning_radius
     if radius is None:
         return []
-    key = ("AckermannConstraints",) if options.nav2 == "kilted" else ("ackermann",)
+    name, plugin = motion_model("ackermann", distro)
+    key = (name,) if plugin else ("AckermannConstraints",)
     speed, yaw_rate = slip_gains(numbers, turning_twists(model, radius))
     if not (yaw_rate.value > 0.0 and speed.value > 0.0):
         raise ModelError(

@@ -1,53 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Learned limits of the drive among the parameters of Nav2's MPPI controller."""
+"""Dead bands among the parameters of Nav2's MPPI controller, and what its file says of limits."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-
-from slipwise.export.body_limits import BodyLimits, strictest
-from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
-from slipwise.export.parameter_file import Entry, Kept, stated
+from slipwise.export.learned_number import LearnedNumbers
+from slipwise.export.parameter_file import Entry, Kept
 from slipwise.models.schema import LimitsSection
 
 _DEAD_BANDS = ("VelocityDeadbandCritic", "deadband_velocities")
 _SIDES = """\
 Limits of the sides bound speed and turning together; here each is bounded as if the robot did only that.
 Where it does both, keep below them by yourself."""
-
-
-@dataclass(frozen=True, eq=False)
-class Bound:
-    """A number that bounds a parameter, and what it is."""
-
-    number: LearnedNumber
-    meaning: str
-
-
-def with_limits(
-    bounds: Mapping[str, Sequence[Bound]], limits: BodyLimits, numbers: LearnedNumbers
-) -> list[Entry | Kept]:
-    """Return one entry for each parameter, the strictest of its bounds and of the learned limits."""
-    learned = {
-        "vx_max": (limits.saturation_v, 1.0),
-        "vx_min": (limits.saturation_v, -1.0),
-        "wz_max": (limits.saturation_omega, 1.0),
-        "ax_max": (limits.slew_rate_up_v, 1.0),
-        "ax_min": (limits.slew_rate_down_v, -1.0),
-        "az_max": (limits.slew_rate_up_omega, 1.0),
-    }
-    entries = []
-    for name, (found, sign) in learned.items():
-        all_bounds = list(bounds.get(name, ()))
-        for number in found:
-            text = f"learned: the drive's limit, {numbers.text(number)}"
-            all_bounds.append(Bound(number * sign, text))
-        if all_bounds:
-            least = strictest([bound.number for bound in all_bounds], numbers)
-            meaning = next(bound.meaning for bound in all_bounds if bound.number is least)
-            entries.append(stated((name,), least, meaning, numbers))
-    return entries
 
 
 def dead_bands(limits: LimitsSection | None, numbers: LearnedNumbers) -> list[Entry | Kept]:

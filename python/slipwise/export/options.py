@@ -6,11 +6,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
 
 from slipwise.errors import SettingsError
-
-NAV2_NAMES = ("rolling", "kilted")
 
 #: What makes sense of each number; far outside of these it has another unit.
 _BOUNDS = {
@@ -20,6 +17,8 @@ _BOUNDS = {
     "logged_radius_multiplier": (0.01, 100.0, ""),
     "min_turning_radius": (0.001, 10000.0, "m"),
     "wheel_base": (0.001, 100.0, "m"),
+    "update_rate": (0.1, 100000.0, "Hz"),
+    "planning_horizon": (0.01, 1000.0, "s"),
 }
 
 
@@ -36,7 +35,13 @@ class ExportOptions:
     logged_separation_multiplier: float = 1.0  # in force while the log was recorded
     logged_radius_multiplier: float = 1.0  # in force while the log was recorded
     min_turning_radius: float | None = None  # m, by the geometry of an Ackermann vehicle
-    nav2: Literal["rolling", "kilted"] = "rolling"  # whose parameter names MPPI gets
+    ros_distro: str | None = None  # release of ROS whose parameters are written, such as jazzy
+    update_rate: float | None = None  # Hz, of the controller manager
+    planning_horizon: float = 2.8  # s that MPPI plans ahead: time_steps times model_dt
+    limits: bool = False  # write limits of speeds and accelerations too: they narrow what the robot may do
+    stamped_commands: bool | None = None  # whether commands are TwistStamped
+    omni: bool = False  # the robot drives sideways, too
+    small_alphas: bool = False  # write alphas of AMCL that are below its default
     wheel_base: float | None = None  # m, of a vehicle that steers
     px4: str | None = None  # version, such as 1.17
     ardupilot: str | None = None  # version, such as 4.6
@@ -56,7 +61,3 @@ class ExportOptions:
         for name, value in self.logged.items():
             if not math.isfinite(value):
                 raise SettingsError(f"{name} was {value}", where="--logged", advice="give a finite number")
-        if self.nav2 not in NAV2_NAMES:
-            raise SettingsError(
-                f"unknown Nav2 version '{self.nav2}'", advice=f"one of {', '.join(NAV2_NAMES)}"
-            )

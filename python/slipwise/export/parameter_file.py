@@ -12,6 +12,7 @@ import yaml
 from slipwise.errors import ModelError
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.origin import one_line
+from slipwise.export.ros_tables import RosTable
 
 _ROW = 15  # numbers on a line
 
@@ -92,6 +93,26 @@ def stated(
     """Return a learned number as an entry, or why it is none."""
     why = numbers.objection(number)
     return Kept(key, why) if why else Entry(key, number.value, meaning)
+
+
+def for_release(
+    entries: Sequence[Entry | Kept], table: RosTable, distro: str | None = None
+) -> list[Entry | Kept]:
+    """Return the entries that a release has; the others say that it does not.
+
+    Raises:
+        KeyError: the table does not know a parameter at all.
+    """
+    there, known = table.of_distro(distro), {f"{table.prefix}{each.name}" for each in table.parameters}
+    for entry in entries:
+        if entry.name not in known:
+            raise KeyError(entry.name)
+    return [
+        entry
+        if entry.name in there or isinstance(entry, Kept)
+        else Kept(entry.key, f"ROS 2 {(distro or '').capitalize()} has no such parameter")
+        for entry in entries
+    ]
 
 
 def yaml_value(value: Value) -> str:

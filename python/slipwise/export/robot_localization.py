@@ -3,29 +3,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
-from slipwise.export.actuator import actuator_of
-from slipwise.export.body_limits import body_limits, slip_gains, strictest
-from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
+from slipwise.export.actuator import ChannelResponse, actuator_of
+from slipwise.export.body_limits import body_limits, slip_gains
+from slipwise.export.learned_number import LearnedNumbers
+from slipwise.export.measured_limits import Limit, MeasuredLimits
 from slipwise.export.options import ExportOptions
-from slipwise.export.parameter_file import Entry, Kept, ParameterFile
+from slipwise.export.parameter_file import Entry, Kept, ParameterFile, for_release
 from slipwise.export.reference_drive import (
     ReferenceDrive,
     learned_variances,
     reference_drive,
     slip_density,
 )
+from slipwise.export.ros_tables import ROBOT_LOCALIZATION
 from slipwise.models.body_gains import body_twists
 from slipwise.models.model import Model
+from slipwise.models.schema import MeasuredBody
 
 FREQUENCY = 30.0  # Hz, the filter's default
 #: The filter's own defaults of the process noise, [x, y, z, roll, pitch, yaw and their rates, ax, ay, az].
 DEFAULTS = (0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025, 0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015)
 _X, _Y, _YAW = 0, 1, 5
-
-Bounds = Sequence[LearnedNumber]
 
 
 def robot_localization(model: Model, options: ExportOptions) -> ParameterFile:
@@ -40,14 +40,15 @@ def robot_localization(model: Model, options: ExportOptions) -> ParameterFile:
         Entry(("frequency",), FREQUENCY, "[Hz] the filter's default; the gains below stay below it"),
         Entry(("two_d_mode",), True, "the model is planar"),
         *_process_noise(model, drive, options.horizon),
-        *(_control(model) if from_commands else [Entry(("use_control",), False, _NO_CONTROL)]),
+        *(_control(model, options) if from_commands else [Entry(("use_control",), False, _NO_CONTROL)]),
     ]
     return ParameterFile(
         node="ekf_filter_node",
-        entries=entries,
+        entries=for_release(entries, ROBOT_LOCALIZATION),
         notes=[
             "Names of robot_localization for ROS 2, all versions. Its sensors (odom0, imu0, ...) are yours.",
             _NOT_TWICE,
+            "The filter reads these when it starts: restart it with this file.",
         ],
     )
 
@@ -95,47 +96,32 @@ class _Axis:
     """What the filter is to know of one commanded speed; `why` says why nothing, where that is so."""
 
     gain: float  # 1/s
-    acceleration: float  # m/s^2 or rad/s^2
-    braking: float
     why: str = ""
 
 
-def _axis(
-    lag: LearnedNumber, span: list[float], rates: tuple[Bounds, Bounds], numbers: LearnedNumbers
-) -> _Axis:
-    """Return the gain 1/lag, by which the filter multiplies the missing speed, and limits that let it."""
-    why = numbers.objection(lag)
+def _axis(channel: ChannelResponse, numbers: LearnedNumbers) -> _Axis:
+    """Return the gain 1/lag, by which the filter multiplies the missing speed."""
+    lag = channel.mean_lag
+    why = channel.doubt or numbers.objection(lag)
     if why:
-        return _Axis(0.0, 0.0, 0.0, why)
+        return _Axis(0.0, why)
     quick = lag.value * FREQUENCY <= 1.0
-    gain = numbers.exactly(FREQUENCY) if quick else numbers.exactly(1.0) / lag
-    ramp = gain * (max(span[1], 0.0) - min(span[0], 0.0))
-    acceleration, braking = (strictest([ramp, *learned], numbers).value for learned in rates)
-    return _Axis(gain.value, acceleration, braking)
+    return _Axis(FREQUENCY if quick else 1.0 / lag.value)
 
 
-def _control(model: Model) -> list[Entry | Kept]:
+def _control(model: Model, options: ExportOptions) -> list[Entry | Kept]:
     """Return the control term of the axes whose lag is known."""
-    numbers, actuator, span = LearnedNumbers(model.body), actuator_of(model), model.content.range
-    slip = slip_gains(numbers, body_twists(model))
-    behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
-    limits = body_limits(model.content.limits, behind, numbers)
-    v = _axis(actuator.v.mean_lag, span.speed, (limits.slew_rate_up_v, limits.slew_rate_down_v), numbers)
-    omega = _axis(
-        actuator.omega.mean_lag,
-        span.yaw_rate,
-        (limits.slew_rate_up_omega, limits.slew_rate_down_omega),
-        numbers,
-    )
+    numbers, actuator = LearnedNumbers(model.body), actuator_of(model)
+    v, omega = _axis(actuator.v, numbers), _axis(actuator.omega, numbers)
     if v.why and omega.why:
         return [Kept(("use_control",), f"the lag of the speed: {v.why};\nthat of the yaw rate: {omega.why}")]
     delays = f"{numbers.text(actuator.v.delay)} s and {numbers.text(actuator.omega.delay)} s"
     unknown = [
         f"not the {name}: {axis.why}" for name, axis in (("speed", v), ("yaw rate", omega)) if axis.why
     ]
-    steps = "what the lag does at the widest step of the log, or the drive's limit"
     return [
         Entry(("use_control",), True, f"the filter has no delay; this robot's are {delays}"),
+        _stamped(options.stamped_commands),
         Entry(
             ("control_config",),
             [not v.why, False, False, False, False, not omega.why],
@@ -147,13 +133,58 @@ def _control(model: Model) -> list[Entry | Kept]:
             "[1/s] one over the lag, at most the filter's frequency",
         ),
         Entry(("deceleration_gains",), _on_axes(v.gain, omega.gain), "[1/s] as above"),
-        Entry(
-            ("acceleration_limits",),
-            _on_axes(v.acceleration, omega.acceleration),
-            f"[m/s^2, rad/s^2] {steps}",
-        ),
-        Entry(("deceleration_limits",), _on_axes(v.braking, omega.braking), "[m/s^2, rad/s^2] as above"),
+        *_accelerations(model, numbers, (v, omega)),
     ]
+
+
+def _stamped(stamped: bool | None) -> Entry | Kept:
+    if stamped is None:
+        return Kept(
+            ("stamped_control",),
+            "whether commands are TwistStamped must be right, or the filter hears none:\n"
+            "give --stamped-commands or --no-stamped-commands",
+        )
+    return Entry(("stamped_control",), stamped, f"commands are {'TwistStamped' if stamped else 'Twist'}")
+
+
+def _accelerations(model: Model, numbers: LearnedNumbers, axes: tuple[_Axis, _Axis]) -> list[Entry | Kept]:
+    """Return how quickly the robot may follow in the filter: as the poses show it, or the drive's limit."""
+    actuator, body = actuator_of(model), model.content.range.body
+    slip = slip_gains(numbers, body_twists(model))
+    behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
+    measured = MeasuredLimits(model, body_limits(model.content.limits, behind, numbers), numbers)
+
+    def shown(place: int) -> tuple[list[Limit], list[Limit]]:
+        rates = (0.0, 0.0) if body is None else _shown(body, place)
+        return tuple(  # type: ignore[return-value]
+            [Limit(numbers.exactly(rate), "as the poses show it")] if rate > 0.0 else [] for rate in rates
+        )
+
+    found = {
+        "acceleration_limits": (
+            measured.acceleration(*shown(0)[0]),
+            measured.yaw_acceleration(*shown(0)[1]),
+        ),
+        "deceleration_limits": (measured.braking(*shown(1)[0]), measured.yaw_braking(*shown(1)[1])),
+    }
+    entries: list[Entry | Kept] = []
+    for name, limits in found.items():
+        used = [limit for limit, axis in zip(limits, axes, strict=True) if not axis.why]
+        problems = [limit for limit in used if isinstance(limit, str)]
+        if problems:
+            entries.append(Kept((name,), problems[0]))
+            continue
+        v, omega = (
+            0.0 if axis.why or isinstance(limit, str) else limit.number.value
+            for limit, axis in zip(limits, axes, strict=True)
+        )
+        sources = "; ".join(dict.fromkeys(limit.source for limit in used if isinstance(limit, Limit)))
+        entries.append(Entry((name,), _on_axes(v, omega), f"[m/s^2, rad/s^2] {sources}"))
+    return entries
+
+
+def _shown(body: MeasuredBody, place: int) -> tuple[float, float]:
+    return body.acceleration[place], body.yaw_acceleration[place]
 
 
 def _on_axes(v: float, omega: float) -> list[float]:

@@ -41,7 +41,7 @@ class Target:
 
 def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callable[..., Exported]:
     def write(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
-        file = make(model, options)
+        file = make(model.body, options)
         return Exported(file.text(origin), file.values(), file.kept())
 
     return write
@@ -49,7 +49,7 @@ def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callab
 
 def _firmware(make: Callable[[Model, ExportOptions, list[str]], FirmwareFile]) -> Callable[..., Exported]:
     def write(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
-        file = make(model, options, origin)
+        file = make(model.body, options, origin)
         return Exported(file.text, file.values, file.kept)
 
     return write

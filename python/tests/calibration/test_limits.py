@@ -15,9 +15,8 @@ from slipwise import _core
 from slipwise.calibration import Settings, calibrate
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.limit_words import limits_advice
-from slipwise.export.body_limits import body_limits
 from slipwise.export.learned_number import LearnedNumbers
-from slipwise.export.mppi_limits import Bound, dead_bands, with_limits
+from slipwise.export.mppi_limits import dead_bands
 from slipwise.export.parameter_file import Entry
 from slipwise.logs import open_log
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
@@ -148,7 +147,7 @@ def test_a_model_with_limits_plans_as_it_predicts(model: Model) -> None:
     assert controller.command((0.0, 0.0, 0.0), (0.5, 0.0))[0] > 0.0
 
 
-def test_limits_of_commands_reach_the_parameters_of_nav2() -> None:
+def test_dead_bands_of_commands_reach_the_parameters_of_nav2() -> None:
     def learned(value: float) -> LearnedLimit:
         return LearnedLimit(value=value, std=0.01)
 
@@ -164,22 +163,8 @@ def test_limits_of_commands_reach_the_parameters_of_nav2() -> None:
         gain_omega=1.0,
     )
     numbers = LearnedNumbers(make_model(replace(named("edd-2"), commands=True)))
-    gains = (numbers.exactly(0.9), numbers.exactly(1.0))
-    bounds = {
-        "vx_max": [Bound(numbers.exactly(3.0), "as far as the log went")],
-        "wz_max": [Bound(numbers.exactly(2.0), "the same")],
-    }
-    made = [
-        *with_limits(bounds, body_limits(section, gains, numbers), numbers),
-        *dead_bands(section, numbers),
-    ]
-    entries = {entry.key: entry.value for entry in made if isinstance(entry, Entry)}
-    assert entries[("vx_max",)] == pytest.approx(0.9)
-    assert entries[("wz_max",)] == 2.0
-    assert entries[("ax_max",)] == pytest.approx(1.8)
+    entries = {entry.key: entry.value for entry in dead_bands(section, numbers) if isinstance(entry, Entry)}
     assert entries[("VelocityDeadbandCritic", "deadband_velocities")] == [0.1, 0.0, 0.0]
-    free = with_limits(bounds, body_limits(None, gains, numbers), numbers)
-    assert free == [Entry(("vx_max",), 3.0, "as far as the log went"), Entry(("wz_max",), 2.0, "the same")]
     assert dead_bands(None, numbers) == []
 
 

@@ -42,7 +42,7 @@ def bad(folder: Path) -> Path:
 
 
 def test_one_target_is_written_to_the_file_that_is_named(slipwise: Slipwise, wheel: Path) -> None:
-    result = slipwise("export", wheel, "--to", "diff-drive", "-o", "robot/dd.yaml")
+    result = slipwise("export", wheel, "--to", "diff-drive", "--ros-distro", "jazzy", "-o", "robot/dd.yaml")
     assert (result.code, result.err) == (0, "")
     parameters = yaml.safe_load(Path("robot/dd.yaml").read_text())["diff_drive_controller"]["ros__parameters"]
     assert parameters["wheel_separation_multiplier"] == pytest.approx(0.9 / 0.7, rel=1e-5)
@@ -55,7 +55,7 @@ def test_a_version_of_a_firmware_chooses_its_file(slipwise: Slipwise, command: P
     assert slipwise("export", command, "--px4", "1.17", "--logged", "RO_MAX_THR_SPEED=2").code == 0
     assert "RO_MAX_THR_SPEED\t1.8" in Path("px4.params").read_text()
     assert slipwise("export", command, "--ardupilot", "4.6").code == 0
-    assert "ATC_STR_RAT_MAX," in Path("ardupilot.param").read_text()
+    assert "Limits are left as they are" in Path("ardupilot.param").read_text()
 
 
 def test_without_an_output_the_file_has_its_usual_name(slipwise: Slipwise, wheel: Path) -> None:
@@ -64,15 +64,29 @@ def test_without_an_output_the_file_has_its_usual_name(slipwise: Slipwise, wheel
 
 
 def test_all_writes_what_fits_and_says_what_does_not(slipwise: Slipwise, wheel: Path) -> None:
-    result = slipwise("export", wheel, "--to", "all", "-o", "config")
+    result = slipwise("export", wheel, "--to", "all", "-o", "config", "--ros-distro", "jazzy")
     assert result.code == 0
     assert left_in(Path("config")) == ALL_OF_WHEEL
     assert "left out: mppi: " in result.out
     assert "--input command" in result.out
 
 
+def test_the_release_of_ros_is_asked_for_where_it_matters(
+    slipwise: Slipwise, command: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    result = slipwise("export", command, "--to", "mppi")
+    assert result.code == 2
+    assert "which release of ROS is it for?" in result.err
+    assert "--ros-distro" in result.err
+    monkeypatch.setenv("ROS_DISTRO", "kilted")
+    assert slipwise("export", command, "--to", "mppi").code == 0
+    assert 'motion_model: "DiffDrive"' in Path("nav2_mppi.yaml").read_text()
+
+
 def test_json_holds_files_parameters_and_what_was_left_out(slipwise: Slipwise, command: Path) -> None:
-    document = slipwise("export", command, "--to", "all", "-o", "config", "--json", "-").json
+    asked = ("--to", "all", "-o", "config", "--ros-distro", "rolling", "--json", "-")
+    document = slipwise("export", command, *asked).json
     assert (document["command"], document["exit_code"]) == ("export", 0)
     assert set(document["files"]) == {"mppi", "robot-localization", "c-header"}
     assert set(document["left_out"]) == {"diff-drive", "amcl", "autoware", "px4", "ardupilot"}
@@ -100,7 +114,7 @@ REFUSED = {
     "commands for wheels": (("command.yaml", "--to", "diff-drive"), "need a model learned from wheel speeds"),
     "wheels for commands": (("wheel.yaml", "--to", "mppi"), "not learned from commands"),
     "Ackermann for wheels": (
-        ("wheel.yaml", "--to", "diff-drive", "--min-turning-radius", "1"),
+        ("wheel.yaml", "--to", "diff-drive", "--ros-distro", "jazzy", "--min-turning-radius", "1"),
         "smallest turning radius has no diff_drive_controller",
     ),
     "no target": (("wheel.yaml",), "Missing option '--to'"),

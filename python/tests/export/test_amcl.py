@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from sample_models import Made, make_model, named
 from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.export import ExportOptions, export_model
-from slipwise.export.amcl import UPDATE_ANGLE, UPDATE_DISTANCE, alphas
+from slipwise.export.amcl import DEFAULT, UPDATE_ANGLE, UPDATE_DISTANCE, alphas
 from slipwise.export.reference_drive import motion_covariance
 from slipwise.models import Model
 
@@ -82,20 +83,31 @@ def test_alphas_are_covariance_over_distance_and_update() -> None:
     assert a1 == pytest.approx(9.0 * 2e-3 / UPDATE_ANGLE)
 
 
-def test_file_holds_the_alphas_and_those_of_the_other_sample_model_in_a_comment() -> None:
-    model = make_model(ROBOT)
-    text = export_model(model, "amcl", name="m.yaml", options=ExportOptions(horizon=HORIZON)).text
-    parameters = yaml.safe_load(text)["amcl"]["ros__parameters"]
-    found = alphas(model, HORIZON)
-    assert [parameters[f"alpha{i}"] for i in range(1, 6)] == pytest.approx(found.omni, rel=1e-5)
-    assert parameters["robot_model_type"] == "nav2_amcl::OmniMotionModel"
-    assert (parameters["update_min_d"], parameters["update_min_a"]) == (UPDATE_DISTANCE, UPDATE_ANGLE)
-    comment = "\n".join(
-        line[2:] for line in text.splitlines() if line.startswith(("# alpha", "# robot_model"))
-    )
-    other = yaml.safe_load(comment)
-    assert other.pop("robot_model_type") == "nav2_amcl::DifferentialMotionModel"
-    assert list(other.values()) == pytest.approx(found.differential, rel=1e-5)
+def written(options: ExportOptions) -> dict[str, Any]:
+    text = export_model(make_model(ROBOT), "amcl", name="m.yaml", options=options).text
+    parameters: dict[str, Any] = yaml.safe_load(text)["amcl"]["ros__parameters"]
+    return parameters
+
+
+def test_file_holds_the_alphas_of_the_sample_model_of_the_robots_kind() -> None:
+    asked = ExportOptions(horizon=HORIZON, small_alphas=True)
+    found = alphas(make_model(ROBOT), HORIZON)
+    one, omni = written(asked), written(replace(asked, omni=True))
+    assert one["robot_model_type"] == "nav2_amcl::DifferentialMotionModel"
+    assert [one[f"alpha{i}"] for i in range(1, 5)] == pytest.approx(found.differential[:4], rel=1e-5)
+    assert "alpha5" not in one
+    assert omni["robot_model_type"] == "nav2_amcl::OmniMotionModel"
+    assert [omni[f"alpha{i}"] for i in range(1, 6)] == pytest.approx(found.omni, rel=1e-5)
+    assert (omni["update_min_d"], omni["update_min_a"]) == (UPDATE_DISTANCE, UPDATE_ANGLE)
+
+
+def test_alphas_below_amcls_default_are_left_and_the_file_says_why() -> None:
+    file = export_model(make_model(ROBOT), "amcl", name="m", options=ExportOptions(horizon=HORIZON))
+    found = alphas(make_model(ROBOT), HORIZON).differential[:4]
+    for i, alpha in enumerate(found, start=1):
+        assert (f"alpha{i}" in file.values) == (alpha >= DEFAULT)
+    assert any("below AMCL's default of 0.2: --small-alphas" in why for why in file.kept.values())
+    assert "# CAUTION: alphas far below AMCL's default" in file.text
 
 
 def test_learned_growth_makes_the_alphas_grow() -> None:

@@ -23,10 +23,11 @@ from slipwise.models import Model
 
 EDD_2 = named("edd-2", lon__V=-0.08, ang__w=-0.5)
 SEPARATION = 0.48
+JAZZY = ExportOptions(ros_distro="jazzy")
 
 
 def written(model: Model, options: ExportOptions | None = None) -> dict[str, Any]:
-    text = export_model(model, "diff-drive", name="model.yaml", options=options).text
+    text = export_model(model, "diff-drive", name="model.yaml", options=options or JAZZY).text
     parameters: dict[str, Any] = yaml.safe_load(text)["diff_drive_controller"]["ros__parameters"]
     return parameters
 
@@ -66,7 +67,7 @@ def test_unequal_radii_are_told_apart_with_a_separation() -> None:
         "ang.w": turn_per_turn - 1.0,
     }
     made = Made(_core.named_basis("full-linear-6"), values, speed=(-1.0, 1.0), yaw_rate=(-1.0, 1.0))
-    parameters = written(make_model(made), ExportOptions(wheel_separation=SEPARATION))
+    parameters = written(make_model(made), replace(JAZZY, wheel_separation=SEPARATION))
     assert parameters["wheel_separation"] == SEPARATION
     assert parameters["left_wheel_radius_multiplier"] == pytest.approx(left, rel=1e-5)
     assert parameters["right_wheel_radius_multiplier"] == pytest.approx(right, rel=1e-5)
@@ -84,12 +85,12 @@ def test_a_richer_model_maps_by_least_squares_over_its_range_and_says_what_is_le
     assert (found.left_radius.value, found.separation.value) == pytest.approx((g, g / h))
     left = [np.sqrt(np.mean(np.square(part))) for part in (forward - g * v, 0.07 * w, turn - h * w)]
     assert found.residual == pytest.approx(left)
-    text = export_model(model, "diff-drive", name="model.yaml").text
+    text = export_model(model, "diff-drive", name="model.yaml", options=JAZZY).text
     assert f"forward {left[0]:.2g} m/s, sideways {left[1]:.2g} m/s, yaw {left[2]:.2g} rad/s" in text
 
 
 def test_multipliers_in_force_while_logging_are_multiplied() -> None:
-    options = ExportOptions(logged_separation_multiplier=1.875, logged_radius_multiplier=1.1)
+    options = replace(JAZZY, logged_separation_multiplier=1.875, logged_radius_multiplier=1.1)
     parameters = written(make_model(named("edd-2", ang__w=-0.2)), options)
     assert parameters["wheel_separation_multiplier"] == pytest.approx(1.875 / 0.8, rel=1e-5)
     assert parameters["left_wheel_radius_multiplier"] == pytest.approx(1.1, rel=1e-5)
@@ -118,7 +119,7 @@ def test_a_perfect_robot_has_multipliers_of_one_within_three_sigma() -> None:
 def test_twist_covariance_gives_the_models_covariance_after_the_horizon() -> None:
     """Messages with this variance, each as new, spread as much after the horizon as `predict` says."""
     made = replace(EDD_2, speed=(-1.0, 1.0), yaw_rate=(-1.0, 1.0), inflation={1.0: 1.5}, fraction=0.1)
-    parameters = written(make_model(made), ExportOptions(horizon=2.0))
+    parameters = written(make_model(made), replace(JAZZY, horizon=2.0))
     motion = np.array([0.5 + 0.3 * 0.5, 0.5 + 0.3 * 0.5, 0.5 + 0.5 / 5.0])  # derivations/uncertainty.md
     lasting = np.square(0.1 * motion) + np.square([0.01 * 0.5, 0.0, 0.01 * 0.5])  # slip, and parameters
     variance = 1.5 * (1e-3 * motion * 2.0 + lasting * 4.0)
@@ -129,17 +130,30 @@ def test_twist_covariance_gives_the_models_covariance_after_the_horizon() -> Non
     assert all(value > 0.0 for value in parameters["pose_covariance_diagonal"])
 
 
-def test_limits_are_the_range_of_the_body_and_let_it_stop_and_turn_to_both_sides() -> None:
-    parameters = written(make_model(replace(EDD_2, speed=(0.2, 1.0), yaw_rate=(0.1, 0.8))))
-    assert parameters["linear.x.max_velocity"] == pytest.approx(0.92)
-    assert parameters["linear.x.min_velocity"] == 0.0
-    assert parameters["angular.z.max_velocity"] == pytest.approx(0.4)
-    assert parameters["angular.z.min_velocity"] == pytest.approx(-0.4)
+def test_limits_are_written_where_they_are_asked_for_alone_and_are_what_the_poses_show() -> None:
+    parameters = written(make_model(EDD_2), replace(JAZZY, limits=True))
+    assert parameters["linear.x.max_velocity"] == 1.35
+    assert parameters["linear.x.min_velocity"] == -0.45
+    assert parameters["angular.z.max_velocity"] == 0.7
+    assert parameters["angular.z.min_velocity"] == -0.7
+    assert not any("velocity" in name for name in written(make_model(EDD_2)))
+    humble = written(make_model(EDD_2), ExportOptions(ros_distro="humble", limits=True))
+    assert humble["linear.x.has_velocity_limits"] is True
+
+
+def test_the_twists_covariance_is_for_the_rate_at_which_odometry_comes() -> None:
+    model = make_model(EDD_2)
+    old = written(model)["twist_covariance_diagonal"]
+    new = written(model, ExportOptions(ros_distro="lyrical", update_rate=500.0))
+    assert "publish_rate" not in new
+    assert new["twist_covariance_diagonal"][0] == pytest.approx(10.0 * old[0], rel=1e-4)
+    unknown = export_model(model, "diff-drive", name="m", options=ExportOptions(ros_distro="lyrical"))
+    assert "give --update-rate" in unknown.kept["twist_covariance_diagonal"]
 
 
 REFUSED = {
     "from commands": (replace(EDD_2, commands=True), None, "need a model learned from wheel speeds"),
-    "Ackermann": (EDD_2, ExportOptions(min_turning_radius=0.8), "smallest turning radius has no diff_drive"),
+    "Ackermann": (EDD_2, replace(JAZZY, min_turning_radius=0.8), "smallest turning radius has no diff_drive"),
     "turns the other way": (named("edd-2", ang__w=-1.5), None, "turn it by -0.5"),
     "never drove": (replace(EDD_2, speed=(0.0, 0.0)), None, "move the robot by a factor of 0,"),
 }
@@ -159,7 +173,7 @@ def test_what_does_not_fit_is_refused(made: Made, options: ExportOptions | None,
         {"wheel_separation": -0.5},
         {"logged_separation_multiplier": float("inf")},
         {"min_turning_radius": 0.0},
-        {"nav2": "foxy"},
+        {"update_rate": 0.0},
     ],
 )
 def test_impossible_options_are_refused(wrong: dict[str, Any]) -> None:

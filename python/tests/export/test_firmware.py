@@ -40,7 +40,7 @@ def ardupilot_values(text: str, folder: Path) -> dict[str, float]:
 
 def test_pymavlink_reads_back_what_was_said_to_be_written(tmp_path: Path) -> None:
     logged = {"ATC_STR_RAT_FF": 0.2, "CRUISE_SPEED": 2.0, "CRUISE_THROTTLE": 50.0}
-    made = exported(LIMITED, "ardupilot", ardupilot="4.7", logged=logged)
+    made = exported(LIMITED, "ardupilot", ardupilot="4.7", logged=logged, limits=True)
     read = ardupilot_values(made.text, tmp_path)
     assert set(read) == set(made.values)
     gains = (0.9 * 1.1, 0.6 * 0.9)  # of the body, behind limits with gains of their own
@@ -49,7 +49,7 @@ def test_pymavlink_reads_back_what_was_said_to_be_written(tmp_path: Path) -> Non
         "CRUISE_SPEED": 2.0 * gains[0],
         "ATC_ACCEL_MAX": 0.8 * gains[0],
         "ATC_DECEL_MAX": 1.7 * gains[0],
-        "ATC_STR_RAT_MAX": math.degrees(0.7 * gains[1]),
+        "ATC_STR_RAT_MAX": math.degrees(0.7),
         "ATC_STR_ACC_MAX": math.degrees(1.3 * gains[1]),
         "ATC_STR_DEC_MAX": math.degrees(0.9 * gains[1]),
         "MOT_THR_MIN": round(0.1 * 50.0 / 2.0),
@@ -64,7 +64,7 @@ def test_feed_forward_of_yaw_is_corrected_by_what_the_robot_reached(version: str
     made = exported(COMMANDS, "px4", px4=version, logged={name: 1.8})
     read = px4_values(made.text)
     assert read[name] == pytest.approx(1.8 * 0.6 if version == "1.16" else 1.8 / 0.6, rel=1e-5)
-    assert read["RO_YAW_RATE_LIM"] == pytest.approx(math.degrees(0.6 * 1.2), rel=1e-5)
+    assert "RO_YAW_RATE_LIM" not in read
     assert "1.8 was in force" in made.text
 
 
@@ -82,11 +82,19 @@ def test_the_correction_of_wheels_needs_nothing_logged() -> None:
 
 
 def test_learned_limits_are_written_and_absent_ones_are_not() -> None:
-    limited, free = (exported(made, "px4", px4="1.17") for made in (LIMITED, COMMANDS))
+    limited, free = (exported(made, "px4", px4="1.17", limits=True) for made in (LIMITED, COMMANDS))
     assert px4_values(limited.text)["RO_YAW_DECEL_LIM"] == pytest.approx(math.degrees(0.9 * 0.54), rel=1e-5)
     assert px4_values(limited.text)["RO_MAX_THR_SPEED"] == pytest.approx(1.1 * 0.99)
     assert {"RO_ACCEL_LIM", "RO_DECEL_LIM", "RO_YAW_ACCEL_LIM", "RO_MAX_THR_SPEED"} <= set(free.kept)
     assert "shows no limit of the acceleration" in free.kept["RO_ACCEL_LIM"]
+    assert px4_values(free.text)["RO_YAW_RATE_LIM"] == pytest.approx(math.degrees(0.7), rel=1e-5)
+    assert px4_values(free.text)["RO_SPEED_LIM"] == 1.35
+
+
+def test_limits_are_left_unless_they_are_asked_for() -> None:
+    made = exported(LIMITED, "px4", px4="1.17")
+    assert not any(name.endswith("_LIM") for name in {*made.values, *made.kept})
+    assert "Limits are left as they are (RO_SPEED_LIM" in made.text
 
 
 def test_a_vehicle_that_steers_gets_its_steering_angle() -> None:

@@ -36,7 +36,7 @@ SOURCES = {
     target.name: COMMAND if target.name in ("mppi", "robot-localization", "px4", "ardupilot") else WHEEL
     for target in TARGETS
 }
-VERSIONS = ExportOptions(px4="1.17", ardupilot="4.6")
+VERSIONS = ExportOptions(ros_distro="jazzy", px4="1.17", ardupilot="4.6")
 
 Place = tuple[str | int, ...]
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from sample_models import Made, make_model, named
+from sample_models import BODY, Made, make_model, named
 
 from slipwise import _core
 from slipwise.errors import ModelError
@@ -26,11 +26,13 @@ LATE = replace(
     ),
     commands=True,
 )
-KILTED = ExportOptions(nav2="kilted")
+NEW = ExportOptions(ros_distro="rolling")
+KILTED = ExportOptions(ros_distro="kilted", limits=True)
+BODY_SPEED, BODY_TURN = 1.35, 0.7
 
 
 def written(made: Made, options: ExportOptions | None = None) -> dict[str, Any]:
-    text = export_model(make_model(made), "mppi", name="model.yaml", options=options).text
+    text = export_model(make_model(made), "mppi", name="model.yaml", options=options or NEW).text
     parameters: dict[str, Any] = yaml.safe_load(text)["controller_server"]["ros__parameters"]["FollowPath"]
     return parameters
 
@@ -48,7 +50,7 @@ def test_the_delay_loses_the_distance_that_lag_and_delay_lose() -> None:
     assert lost == pytest.approx(0.9 * written(LATE)["model_delay_vx"], rel=1e-3)
 
 
-def test_learned_limits_replace_what_is_less_strict() -> None:
+def test_learned_limits_of_acceleration_replace_what_is_less_strict() -> None:
     axes = {
         "speed": {"dead_band": 0.1, "saturation": 1.2, "slew_rate_up": 0.8, "slew_rate_down": 1.7},
         "yaw_rate": {"saturation": 5.0, "slew_rate_up": 0.3},
@@ -56,21 +58,16 @@ def test_learned_limits_replace_what_is_less_strict() -> None:
     made = replace(named("edd-2"), commands=True, limits=axes)
     parameters, gains = written(made, KILTED), (1.1, 0.9)  # of the sides behind the limits
     free = written(replace(made, limits=None), KILTED)
-    assert parameters["vx_max"] == pytest.approx(gains[0] * 1.2)
-    assert parameters["vx_min"] == pytest.approx(gains[0] * free["vx_min"])
-    assert parameters["wz_max"] == pytest.approx(gains[1] * free["wz_max"])
     assert parameters["ax_max"] == pytest.approx(gains[0] * 0.8)
-    assert parameters["ax_min"] == pytest.approx(-gains[0] * min(1.7, free["ax_max"]))
+    assert parameters["ax_min"] == pytest.approx(free["ax_min"])
     assert parameters["az_max"] == pytest.approx(gains[1] * 0.3)
     assert parameters["VelocityDeadbandCritic"]["deadband_velocities"] == [0.1, 0.0, 0.0]
 
 
 def test_gain_and_slow_part_count() -> None:
     made = replace(named("edd-2", ang__w=-0.4), response=True)
-    model, parameters = make_model(made), written(made)
+    model, parameters = make_model(made), written(made, replace(NEW, planning_horizon=4.0))
     assert parameters["model_delay_vx"] == pytest.approx(0.2 + 0.7 * 0.3 + 0.3 * 1.5)
-    assert parameters["vx_max"] == pytest.approx(0.9 * 1.5)
-    assert parameters["wz_max"] == pytest.approx(0.9 * 0.6 * 1.2)
     path = predict(model, [(-60.0, 0.0, 0.0), (0.0, 1.0, 0.0)], horizon=20.0, start=0.0)
     lost = 0.9 * 20.0 - path.poses[-1, 0]
     assert lost == pytest.approx(0.9 * parameters["model_delay_vx"], rel=1e-3)
@@ -96,35 +93,73 @@ def test_the_delay_is_nearer_to_lag_and_delay_than_nothing_is() -> None:
 
 def test_the_ramp_loses_the_distance_that_lag_and_delay_lose() -> None:
     parameters = written(LATE, KILTED)
-    fastest = 0.9 * 1.5
+    fastest, turn = BODY_SPEED, BODY_TURN
     assert fastest**2 / (2.0 * parameters["ax_max"]) == pytest.approx(fastest * 0.4, rel=1e-5)
-    assert (0.6 * 1.2) ** 2 / (2.0 * parameters["az_max"]) == pytest.approx(0.6 * 1.2 * 0.7, rel=1e-5)
+    assert turn**2 / (2.0 * parameters["az_max"]) == pytest.approx(turn * 0.7, rel=1e-5)
     assert parameters["ax_min"] == -parameters["ax_max"]
 
 
-def test_speeds_are_the_range_of_the_body() -> None:
-    parameters = written(LATE)
-    assert parameters["vx_max"] == pytest.approx(0.9 * 1.5)
-    assert parameters["vx_min"] == pytest.approx(0.9 * -0.5)
-    assert parameters["wz_max"] == pytest.approx(0.6 * 1.2)
-    assert written(replace(LATE, speed=(0.3, 1.0)))["vx_min"] == 0.0
+def test_limits_are_written_where_they_are_asked_for_alone_and_are_what_the_poses_show() -> None:
+    parameters = written(LATE, replace(NEW, limits=True))
+    assert (parameters["vx_max"], parameters["vx_min"], parameters["wz_max"]) == (1.35, -0.45, 0.7)
+    assert not {"vx_max", "vx_min", "wz_max", "ax_max", "ax_min", "az_max"} & written(LATE).keys()
+    assert written(LATE, replace(KILTED, limits=False)) == {"motion_model": "DiffDrive"}
+    older = export_model(make_model(replace(LATE, body=None)), "mppi", name="m", options=KILTED)
+    assert "calibrate again" in older.kept["FollowPath.wz_max"]
 
 
-def test_names_are_those_of_the_nav2_asked_for() -> None:
-    new, old = written(LATE), written(LATE, KILTED)
-    assert (new["motion_model"], new["diff_drive"]) == (
-        "diff_drive",
-        {"plugin": "mppi::DiffDriveMotionModel"},
-    )
-    assert old["motion_model"] == "DiffDrive"
-    assert not any(name.startswith("model_delay") for name in old)
-    assert not any(name.startswith("a") for name in new)
+#: A drive with a dead band, fitted by a lag of seconds.
+SLOW = replace(LATE, values=LATE.values | {"log_time_constant_omega": float(np.log(3.0))})
+
+
+def test_a_lag_that_was_never_seen_to_its_end_takes_no_yaw_away() -> None:
+    made = replace(SLOW, body={**BODY, "held": [5.0, 2.0]})
+    for options in (NEW, KILTED):
+        file = export_model(make_model(made), "mppi", name="m", options=options)
+        assert not {name for name in file.values if name.endswith(("model_delay_wz", "az_max"))}
+    late = export_model(make_model(made), "mppi", name="m", options=NEW)
+    assert "longer than commands were held in the log (2 s)" in late.kept["FollowPath.model_delay_wz"]
+    assert "# a lag of 3 s was learned" in late.text
+
+
+def test_no_delay_is_written_that_leaves_the_controller_nothing_to_decide() -> None:
+    file = export_model(make_model(SLOW), "mppi", name="m", options=NEW)
+    assert "more than a quarter of the 2.8 s" in file.kept["FollowPath.model_delay_wz"]
+    longer = replace(NEW, planning_horizon=14.0)
+    assert written(SLOW, longer)["model_delay_wz"] == pytest.approx(3.2)
+
+
+def test_no_ramp_is_below_what_the_poses_show() -> None:
+    body = {**BODY, "yaw_acceleration": [0.9, 0.9], "acceleration": [0.1, 9.0]}
+    file = export_model(make_model(replace(LATE, body=body)), "mppi", name="m", options=KILTED)
+    assert "FollowPath.ax_max" in file.values
+    assert "the poses show 0.9" in file.kept["FollowPath.az_max"]
+    assert "the poses show 9" in file.kept["FollowPath.ax_min"]
+
+
+def test_names_are_those_of_the_release_asked_for() -> None:
+    for distro in ("lyrical", "rolling"):
+        new = written(LATE, ExportOptions(ros_distro=distro))
+        assert new["motion_model"] == "diff_drive"
+        assert new["diff_drive"] == {"plugin": "mppi::DiffDriveMotionModel"}
+        assert "model_delay_wz" in new
+    for distro in ("humble", "jazzy", "kilted"):
+        old = written(LATE, ExportOptions(ros_distro=distro))
+        assert old["motion_model"] == "DiffDrive"
+        assert not any(name.startswith("model_delay") for name in old)
+
+
+def test_no_release_is_guessed() -> None:
+    with pytest.raises(ModelError, match=r"which release of ROS .*--ros-distro humble or"):
+        written(LATE, ExportOptions())
+    with pytest.raises(ModelError, match="no table of parameters for ROS 'foxy'"):
+        written(LATE, ExportOptions(ros_distro="foxy"))
 
 
 @pytest.mark.parametrize(
     ("options", "place", "kind"),
     [
-        (ExportOptions(min_turning_radius=0.8), "ackermann", "ackermann"),
+        (replace(NEW, min_turning_radius=0.8), "ackermann", "ackermann"),
         (replace(KILTED, min_turning_radius=0.8), "AckermannConstraints", "Ackermann"),
     ],
 )
@@ -137,12 +172,12 @@ def test_smallest_turning_radius_is_widened_by_slip(options: ExportOptions, plac
 def test_smallest_turning_radius_is_asked_at_speeds_of_the_log() -> None:
     basis = _core.Basis("understeer", [], [], ["V*V*w"])
     made = Made(basis, {"ang.V^2*w": -0.2}, commands=True, speed=(0.0, 20.0), yaw_rate=(-1.0, 1.0))
-    radius = written(made, ExportOptions(min_turning_radius=1.0))["ackermann"]["min_turning_r"]
+    radius = written(made, replace(NEW, min_turning_radius=1.0))["ackermann"]["min_turning_r"]
     assert 1.0 < radius < 1.3  # the log never turned faster than 1 rad/s, so no faster than 1 m/s at 1 m
 
 
 def test_comment_says_what_the_robot_reaches_of_a_command() -> None:
-    text = export_model(make_model(LATE), "mppi", name="model.yaml").text
+    text = export_model(make_model(LATE), "mppi", name="model.yaml", options=NEW).text
     assert "reaches 0.900 of the speed" in text
     assert "and 0.600 of the yaw rate" in text
 
@@ -161,4 +196,4 @@ def test_a_model_from_wheel_speeds_is_refused() -> None:
 
 def test_a_vehicle_that_does_not_turn_as_steered_is_refused() -> None:
     with pytest.raises(ModelError, match="does not turn the way it is steered"):
-        written(replace(LATE, values={"ang.w": -1.1}), ExportOptions(min_turning_radius=0.8))
+        written(replace(LATE, values={"ang.w": -1.1}), replace(NEW, min_turning_radius=0.8))

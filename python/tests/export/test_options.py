@@ -22,6 +22,8 @@ def test_the_defaults_and_the_bounds_themselves_are_taken() -> None:
         ("logged_separation_multiplier", "give 0.01 to 100"),
         ("logged_radius_multiplier", "give 0.01 to 100"),
         ("min_turning_radius", "give 0.001 to 10000 m"),
+        ("update_rate", "give 0.1 to 100000 Hz"),
+        ("planning_horizon", "give 0.01 to 1000 s"),
     ],
 )
 @pytest.mark.parametrize("value", [0.0, -1.0, 1e300, math.nan, math.inf])
@@ -30,8 +32,3 @@ def test_a_number_out_of_bounds_is_refused_with_its_option(name: str, advice: st
         ExportOptions(**{name: value})
     assert f"--{name.replace('_', '-')}" in str(caught.value)
     assert str(caught.value).rstrip(".").endswith(advice)
-
-
-def test_an_unknown_version_of_nav2_is_refused_with_those_that_are_known() -> None:
-    with pytest.raises(SettingsError, match=r"'humble'.*rolling, kilted"):
-        ExportOptions(nav2="humble")  # type: ignore[arg-type]

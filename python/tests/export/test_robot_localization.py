@@ -48,18 +48,24 @@ def test_what_is_not_learned_keeps_the_filters_defaults() -> None:
     assert diagonal[others].tolist() == [DEFAULTS[i] for i in others]
 
 
-def test_gains_are_one_over_the_lag_and_limits_never_bind_within_the_range() -> None:
+def test_gains_are_one_over_the_lag_and_limits_are_what_the_poses_show() -> None:
     parameters = written(COMMANDED)
     assert parameters["use_control"] is True
     assert parameters["control_config"] == [True, False, False, False, False, True]
     gains = parameters["acceleration_gains"]
     assert gains == pytest.approx([2.5, 0, 0, 0, 0, 4.0])
     assert parameters["deceleration_gains"] == gains
-    widest = [1.4, 0, 0, 0, 0, 1.6]
-    assert parameters["acceleration_limits"] == pytest.approx(
-        [g * w for g, w in zip(gains, widest, strict=True)]
-    )
-    assert parameters["deceleration_limits"] == parameters["acceleration_limits"]
+    assert parameters["acceleration_limits"] == [0.5, 0, 0, 0, 0, 0.2]
+    assert parameters["deceleration_limits"] == [0.6, 0, 0, 0, 0, 0.4]
+    unmeasured = written(replace(COMMANDED, body=None))
+    assert unmeasured["acceleration_gains"] == gains
+    assert "acceleration_limits" not in unmeasured
+
+
+def test_whether_commands_are_stamped_is_said_by_somebody_or_left() -> None:
+    assert "stamped_control" not in written(COMMANDED)
+    for stamped in (True, False):
+        assert written(COMMANDED, ExportOptions(stamped_commands=stamped))["stamped_control"] is stamped
 
 
 def test_the_filters_control_term_follows_a_step_as_the_core_does() -> None:

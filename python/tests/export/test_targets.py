@@ -29,7 +29,7 @@ FITTING = {
     "ardupilot": replace(named("edd-2", ang__w=-0.3), commands=True),
     "c-header": named("edd-2", ang__w=-0.3),
 }
-VERSIONS = ExportOptions(px4="1.17", ardupilot="4.6")
+VERSIONS = ExportOptions(px4="1.17", ardupilot="4.6", ros_distro="jazzy")
 
 
 def content(target: Target, text: str) -> object:
@@ -115,6 +115,26 @@ def test_the_same_model_gives_the_same_bytes() -> None:
 def test_an_unknown_target_is_refused() -> None:
     with pytest.raises(SettingsError, match="unknown target 'spot'"):
         export_model(make_model(FITTING["amcl"]), "spot", name="m.yaml")
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+def test_a_model_that_learned_where_its_pose_sensor_sits_is_exported_like_others(target: Target) -> None:
+    made = fitting(target)
+    options = replace(VERSIONS, wheel_separation=0.5, limits=True)
+    mounted = make_model(replace(made, sensor_extrinsics=(0.2, 0.0, 0.1)))
+    one, other = (
+        export_model(model, target.name, name="m", options=options) for model in (mounted, make_model(made))
+    )
+    if target.name != "c-header":
+        assert one.values == other.values
+        assert one.kept == other.kept
+
+
+def test_wheels_whose_sensor_was_learned_are_exported_to_autopilots() -> None:
+    made = replace(named("edd-2", ang__w=-0.3), sensor_extrinsics=(0.2, 0.0, 0.1))
+    options = replace(VERSIONS, wheel_separation=0.5)
+    for target in ("px4", "ardupilot"):
+        assert export_model(make_model(made), target, name="m", options=options).kept
 
 
 @pytest.mark.slow
