@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.course_heading import course_heading
 from slipwise.logs.driven_windows import driven_windows
 from slipwise.logs.gyro import gyro_contradictions
 from slipwise.logs.held import UNKNOWN_AFTER
@@ -38,8 +39,11 @@ def contradictions(
         other = "wheel" if input_name == "command" else "command"
         others = driven_windows(_windows(log, other, unknown_after), sensor_yaw)
         alone = others.direction.real > 0.5
-        found.append(turned_heading(driven, words, alone=alone))
-        found.append(lost_heading(windows, driven, words))
+        course = course_heading(windows, sensor_yaw)
+        found.append(course)
+        if course is None:  # what else a heading seems to do would come from it
+            found.append(turned_heading(driven, words, alone=alone))
+            found.append(lost_heading(windows, driven, words))
     found.append(repeated_wheels([(inputs, run.poses) for run, inputs in _with(log, "wheel")]))
     return tuple(each for each in found if each is not None)
 

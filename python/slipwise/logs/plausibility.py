@@ -8,12 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.input_units import likely_speeds, likely_turns
 from slipwise.logs.log import Floats
 from slipwise.logs.motion_windows import MotionWindows
 
 _ENOUGH = 15  # windows; with fewer nothing is said
 _ENOUGH_TURN = 3.0  # [rad] in total
 _DEGREES = 180.0 / np.pi
+_DEGREES_LOW, _DEGREES_HIGH = 0.3, 1.2  # poses turn so much of what inputs in degrees say
+_LEAST_TURN, _MOST_TURN = 0.08, 10.0  # of the inputs' turns; real robots turn 0.13 to 4.5 times
 
 
 @dataclass(frozen=True)
@@ -98,12 +101,36 @@ def _units(a: Agreement, inputs: str) -> tuple[str, str]:
             else "the course agrees with degrees"
         )
         return f"yaw looks like degrees ({ratio})", "convert the poses' angles to radians"
-    if turns and abs(a.yaw_inputs) > 0.6 and a.yaw_ratio < 0.05:
-        what = f"omega of the {inputs} looks like degrees per second (poses turn {a.yaw_ratio:.3f} of it)"
-        return what, "convert it to rad/s"
+    if turns and abs(a.yaw_inputs) > 0.6 and not _LEAST_TURN < a.yaw_ratio < _MOST_TURN:
+        return _rates(a, inputs)
     if a.distance_v > 0.6 and a.distance_ratio > 30.0:
         return f"poses move {a.distance_ratio:.0f} times further than the {inputs} say", "use metres and m/s"
     return _FINE
+
+
+def _rates(a: Agreement, inputs: str) -> tuple[str, str]:
+    """Say how far yaw rates of the inputs, and their speeds with them, are off, and the option for that."""
+    option = {"commands": "--command-scale", "wheels": "--wheel-scale"}[inputs]
+    moved, turned = a.distance_ratio, a.yaw_ratio
+    if a.distance_v > 0.6 and not _LEAST_TURN < moved < _MOST_TURN:
+        units = likely_speeds(moved)
+        what = f"poses move {moved:.2g} times as far and turn {turned:.2g} times as much as the {inputs} say"
+        return (
+            f"{what}: they are not in m/s and rad/s" + (f", perhaps {units}" if units else ""),
+            f"convert them: {option} F,F multiplies both by the factor of the unit, about {moved:.2g}",
+        )
+    units, factor = likely_turns(turned)
+    what = f"poses turn {turned:.2g} times as much as omega of the {inputs} says"
+    if _DEGREES_LOW < turned * _DEGREES < _DEGREES_HIGH:
+        what = f"omega of the {inputs} looks like degrees per second (poses turn {turned:.3f} of it)"
+        return (
+            what,
+            f"convert it to rad/s: {option} 1,{1.0 / _DEGREES:.5f}; 1,{1.0 / 60.0:.5f} if it is in rad/min",
+        )
+    return (
+        f"{what}: it is not in rad/s" + (f", perhaps {units}" if units else ""),
+        f"convert it: {option} 1,{factor:.4g} multiplies it",
+    )
 
 
 def _swapped(a: Agreement, inputs: str) -> tuple[str, str]:

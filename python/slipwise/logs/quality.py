@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.course_heading import as_positions, is_course
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Inputs, Log, Run
+from slipwise.logs.log import Inputs, LeftOut, Log, Run, has_course
 from slipwise.logs.motion_windows import motion_windows
 from slipwise.logs.plausibility import agreement, check_plausible
 from slipwise.logs.pose_jumps import find_jumps, without_jumps
@@ -33,9 +34,10 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
     for name in ("commands", "wheels"):
         pairs = [(inputs, run.poses) for run in log.runs if (inputs := _named(run, name)) is not None]
         check_plausible(agreement(motion_windows(pairs, unknown_after)), name, where)
-    tally = Tally()
-    runs = tuple(_smooth(run, unknown_after, tally) for run in log.runs)
-    found = tally.result()
+    runs, found = _smoothed(log, unknown_after)
+    if _heads_along_course(runs, unknown_after):
+        log = as_positions(log)
+        runs, found = _smoothed(log, unknown_after)
     steps = sum(max(len(run.poses) - 1, 0) for run in log.runs)
     if steps >= _FEW and sum(entry.count for entry in found) > _TOO_MANY * steps:
         raise LogError(
@@ -44,6 +46,22 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
             advice="check the units of poses (m, rad) and inputs (m/s, rad/s) and that their clocks agree",
         )
     return replace(log, runs=runs, left_out=log.left_out + found)
+
+
+def _smoothed(log: Log, unknown_after: float) -> tuple[tuple[Run, ...], tuple[LeftOut, ...]]:
+    """Return the runs without pose jumps, and what was left out."""
+    tally = Tally()
+    runs = tuple(_smooth(run, unknown_after, tally) for run in log.runs)
+    return runs, tally.result()
+
+
+def _heads_along_course(runs: tuple[Run, ...], unknown_after: float) -> bool:
+    """Whether headings are a course over ground: they turn about where the robot reverses."""
+    if has_course(runs):
+        return False
+    name = "wheels" if any(run.wheels is not None for run in runs) else "commands"
+    pairs = [(inputs, run.poses) for run in runs if (inputs := _named(run, name)) is not None]
+    return is_course(motion_windows(pairs, unknown_after))
 
 
 def _check_forward(log: Log, where: str) -> None:

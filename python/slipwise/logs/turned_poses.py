@@ -10,6 +10,7 @@ import numpy as np
 
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.driven_windows import DrivenWindows
+from slipwise.logs.input_units import likely_speeds
 from slipwise.logs.motion_windows import MotionWindows
 
 _ENOUGH = 6  # windows; with fewer nothing is said
@@ -81,15 +82,16 @@ def unlikely_speed(driven: DrivenWindows, words: InputWords) -> Contradiction | 
     scale = float(np.median(driven.scale))
     if _SLOWEST[words.name] <= scale <= _FASTEST:
         return None
-    radius = (
-        f"If it is in rad/s of the wheels, give their radius, here about {scale:.2g} m: "
-        f"{words.option} {scale:.2g},1 (or {scale:.2g},{scale:.2g} where the yaw rate is in it too)."
+    units = likely_speeds(scale)
+    factor = (
+        f"Convert it: {words.option} {scale:.2g},1 multiplies it by about the factor of its unit "
+        f"({scale:.2g},{scale:.2g} where the yaw rate is in that unit too)."
     )
-    other = f"Check the units of speed and poses; {words.option} V,OMEGA multiplies speed and yaw rate."
     return Contradiction(
         "unlikely-speed",
-        f"the poses move {scale:.2g} times as far as the {words.name} say: {words.speed} is not in m/s",
-        (radius if scale < 1.0 else other,),
+        f"the poses move {scale:.2g} times as far as the {words.name} say: {words.speed} is not in m/s"
+        + (f", perhaps {units}" if units else ""),
+        (factor if scale < 1.0 else f"Check the units of poses, too. {factor}",),
     )
 
 

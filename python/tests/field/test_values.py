@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,13 @@ import numpy as np
 import pytest
 from cli.conftest import Result
 from field.conftest import FieldLog
+from sample_logs import Drive, simulated_log
+
+from slipwise import _core
+from slipwise.errors import LogError
+from slipwise.logs import Log, Run
+from slipwise.logs.contradictions import contradictions
+from slipwise.logs.quality import checked
 
 Slipwise = Callable[..., Result]
 
@@ -140,3 +148,113 @@ def test_an_antenna_away_from_the_centre_of_turning_is_named_with_its_place(
     known = learned(slipwise, *log, "--settings", "robot.toml")
     assert not any("looks like" in sentence for sentence in known["summary"])
     assert_true(known)
+
+
+# Headings that are a course over ground
+
+
+def over_ground(log: Log) -> Log:
+    """Turn the heading about where the robot reverses, as a receiver's course over ground."""
+
+    def change(run: Run) -> Run:
+        assert run.wheels is not None
+        reverse = np.interp(run.poses.t, run.wheels.t, run.wheels.v) < 0.0
+        yaw = np.where(reverse, run.poses.yaw + np.pi, run.poses.yaw)
+        return replace(run, poses=replace(run.poses, yaw=np.arctan2(np.sin(yaw), np.cos(yaw))))
+
+    return replace(log, runs=tuple(map(change, log.runs)))
+
+
+def sound_log(speeds: tuple[float, float], seconds: float = 90.0) -> Log:
+    basis = _core.named_basis("edd-2")
+    return simulated_log(
+        Drive(seconds=seconds, basis=basis, alpha=(-0.05, -0.3), speeds=speeds, hold=(60, 120))
+    )
+
+
+def test_headings_that_turn_about_in_reverse_leave_positions(slipwise: Slipwise, field_log: FieldLog) -> None:
+    for source in ("command", "wheel"):
+        log = (field_log("cog_heading_flip.mcap"), "--input", source)
+        document = learned(slipwise, *log)
+        assert any(
+            "it is a course over ground; only positions are used" in note for note in document["notes"]
+        )
+        assert any(sentence.startswith("Only positions") for sentence in document["verdict"]["reservations"])
+        speed, turns = (value_of(document, name) for name in ("lon.V", "ang.w"))
+        assert abs(speed[0] + 0.05) < max(2.0 * speed[1], 0.02)
+        assert abs(turns[0] + 0.30) < max(2.0 * turns[1], 0.02)
+
+
+def value_of(document: dict[str, Any], name: str) -> tuple[float, float]:
+    (found,) = (p for p in document["parameters"] if p["name"] == name)
+    return found["value"], found["std"]
+
+
+@pytest.mark.parametrize("speeds", [(-0.6, 0.6), (-0.15, 0.8), (-1.0, 0.3)])
+def test_reverse_may_be_slow_or_seldom(speeds: tuple[float, float]) -> None:
+    sound = sound_log(speeds)
+    assert checked(sound).notes == ()
+    (note,) = checked(over_ground(sound)).notes
+    assert "only positions are used" in note
+    assert not checked(over_ground(sound_log((0.1, 0.8)))).notes  # nothing shows it
+
+
+def test_a_course_over_ground_is_a_contradiction_where_headings_are_learned_from() -> None:
+    for source in ("command", "wheel"):
+        (found,) = contradictions(over_ground(sound_log((-0.4, 0.8))), source)
+        assert (found.kind, found.spoils) == ("course-heading", True)
+        assert "[live] positions = true" in found.advice[0]
+        assert not contradictions(sound_log((-0.4, 0.8)), source)
+
+
+def test_a_drive_that_follows_late_is_no_course_over_ground() -> None:
+    late = Drive(seconds=120.0, lag=1.5, delay=0.4, speeds=(-0.3, 1.2))
+    for seed in range(5):
+        assert not checked(simulated_log(replace(late, seed=seed))).notes
+        assert not contradictions(simulated_log(replace(late, seed=seed)), "command")
+
+
+# Speeds in other units
+
+
+@pytest.mark.parametrize(
+    ("factors", "expected"),
+    [
+        (
+            (300.0, 300.0),
+            ("0.0031 times as far", "rad/min of wheels of 0.19 m", "--wheel-scale F,F", "about 0.0031"),
+        ),
+        ((1000.0, 1000.0), ("in mm/s", "--wheel-scale F,F")),
+        ((1.0, 9.549), ("it is not in rad/s", "in rev/min (times 0.1047)", "--wheel-scale 1,0.1047")),
+        ((1.0, 57.296), ("looks like degrees per second", "--wheel-scale 1,0.01745", "1,0.01667")),
+        ((1.0, 1000.0), ("it is not in rad/s", "in mrad/s (times 0.001)")),
+    ],
+)
+def test_rates_in_another_unit_are_named_with_their_factor(
+    factors: tuple[float, float], expected: tuple[str, ...]
+) -> None:
+    with pytest.raises(LogError) as caught:
+        checked(in_other_units(sound_log((-0.5, 0.8)), factors))
+    for words in expected:
+        assert words in str(caught.value)
+    assert ("degrees" in str(caught.value)) == (factors[1] == 57.296)
+
+
+def in_other_units(log: Log, factors: tuple[float, float]) -> Log:
+    def change(run: Run) -> Run:
+        assert run.wheels is not None
+        v, omega = run.wheels.v * factors[0], run.wheels.omega * factors[1]
+        return replace(run, commands=None, wheels=replace(run.wheels, v=v, omega=omega))
+
+    return replace(log, runs=tuple(map(change, log.runs)))
+
+
+def test_wheels_in_radians_per_minute_are_cured_by_the_option(
+    slipwise: Slipwise, field_log: FieldLog
+) -> None:
+    log = field_log("wheels_rad_per_min.csv")
+    refused = slipwise("calibrate", log)
+    assert refused.code == 2
+    assert "degrees" not in refused.line.partition(":")[0]
+    assert "rad/min of wheels of 0.19 m" in refused.line
+    assert_true(learned(slipwise, log, "--wheel-scale", f"{0.2 / 60.0},{0.2 / 60.0}"))
