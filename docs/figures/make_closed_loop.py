@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws docs/closed-loop.md's figure: paths over a course whose floor changes, and the error over time."""
+"""Draws docs/results.md's figure: paths over a course whose floor changes, and the error over time."""
 
 from __future__ import annotations
 

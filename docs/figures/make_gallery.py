@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes the pictures of docs/gallery.md: reports of `slipwise calibrate` on real logs, in Chromium."""
+"""Takes the pictures of docs/results.md: reports of `slipwise calibrate` on real logs, in Chromium."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def pictures_of(shown: Shown, data: Path, browser: str, folder: Path) -> None:
         runs = ("-o", str(scratch / "model.yaml"), "--runs", str(scratch / "runs"))
         code = run(["calibrate", str(data / f"{shown.log}.csv.gz"), *shown.options, *runs])
         if code != shown.code:
-            sys.exit(f"{shown.log}: exit code {code}, docs/gallery.md says {shown.code}")
+            sys.exit(f"{shown.log}: exit code {code}, docs/results.md says {shown.code}")
         report = (scratch / "runs/latest/report.html").read_text(encoding="utf-8")
         for picture, title in shown.pictures.items():
             page, drawn = scratch / "page.html", scratch / picture

@@ -25,7 +25,7 @@ WHEEL_STD = (0.01, 0.01)  # [m/s], [rad/s] of measured wheel speeds
 END = 2.0  # [m] before the path's end the drive is over: the reference stands still there
 PATIENCE = 2.5  # times the time that the path takes at its speed, after which a drive is given up
 
-#: The same for every model. They were chosen for the vendor's constants: docs/closed-loop.md.
+#: The same for every model. They were chosen for the vendor's constants: docs/results.md.
 OPTIONS = MppiOptions(rollouts=1024, across=20.0, smoothness=0.005, period=TICK * CONTROL_TICKS)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The figure of docs/closed-loop.md shows a course, its floors and how the variants drove."""
+"""The figure of docs/results.md shows a course, its floors and how the variants drove."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from python.tests.docs.pages import ROOT, blocks
 
 import slipwise as sw
 
-PAGE = ROOT / "docs/gallery.md"
+PAGE = ROOT / "docs/results.md"
 
 
 def test_every_picture_is_shown_small_and_made_by_the_script() -> None:
