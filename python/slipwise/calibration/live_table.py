@@ -36,7 +36,10 @@ class ApplyTable(_Table):
     mode: ApplyMode = "off"
     folder: str | None = None  # the model and the files of the targets are written here
     targets: list[Literal["diff-drive", "mppi", "amcl", "robot-localization"]] = []
-    set_parameters: bool = False  # set the parameters of running ROS nodes, too
+    set_parameters: bool = False  # set the parameters of running ROS nodes, too: those that they take
+    ros_distro: Literal["humble", "jazzy", "kilted", "lyrical", "rolling"] | None = None  # None: $ROS_DISTRO
+    update_rate: Annotated[float, Field(ge=0.1, le=1e5)] | None = None  # Hz, of the controller manager
+    planning_horizon: Annotated[float, Field(ge=0.01, le=1000.0)] = 2.8  # s that MPPI plans ahead
     nodes: dict[str, str] = {}  # target: the node's name, where it is not the usual one
     interval: Seconds = 10.0  # s between two times at least
     threshold: Annotated[float, Field(ge=0.0, le=10.0)] = 0.02  # prior sd that a parameter moved, at least

@@ -81,6 +81,11 @@ def build_node(
     if run is not None:
         intake.start_drive(run, DriveStart(table.terrain or "", today()))
     applying = table.apply.mode != "off"
+    if table.apply.targets and not applying:
+        said.note(
+            math.nan,
+            f"nothing is handed on to {', '.join(table.apply.targets)}: the node runs with --apply off",
+        )
     parts = NodeParts(
         who=Identity(table.vehicle, input_name, table.apply.mode),
         transport=transport,

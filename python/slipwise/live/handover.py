@@ -1,49 +1,112 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hands an applied model on: files for other tools, and parameters of running nodes."""
+"""Hands an applied model on: files for other tools, and parameters that running nodes may take."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from slipwise.calibration.live_table import TARGET_NODES, ApplyTable
 from slipwise.errors import SlipwiseError
-from slipwise.export import export_model, find_target
+from slipwise.export import ExportOptions, export_model, find_target
+from slipwise.export.parameter_file import Value
+from slipwise.export.ros_tables import TABLES, RosParameter
 from slipwise.files import write_text_whole
 from slipwise.live.outputs import AppliedParameters
 from slipwise.live.said import Said
 from slipwise.models import Model
 
+_MODEL = "model.yaml"
+_OUR_ODOMETRY = "until then the odometry of slipwise (~/odometry, ~/twist) has what was learned"
+
 
 class Handover:
-    """Writes what is asked for; what cannot be written or does not fit is said once, and the rest goes on."""
+    """Writes what is asked for; what cannot be written or does not fit is said once, and the rest goes on.
+
+    Limits of speeds and accelerations are never among it, and a running node is told only what it takes
+    while it runs.
+
+    Args:
+        rules: what is handed on, and where to.
+        said: where news are said.
+    """
 
     def __init__(self, rules: ApplyTable, said: Said) -> None:
         self._rules, self._said = rules, said
+        self._reached: set[str] = set()  # targets that got something
+        self._options = ExportOptions(
+            ros_distro=rules.ros_distro or os.environ.get("ROS_DISTRO") or None,
+            update_rate=rules.update_rate,
+            planning_horizon=rules.planning_horizon,
+        )
 
     def hand_on(self, t: float, model: Model) -> list[AppliedParameters]:
         """Write the files; return what running nodes are to be told."""
-        self._write(t, "model.yaml", model.to_yaml())
+        if self._rules.folder is None and not (self._rules.set_parameters and self._rules.targets):
+            self._said.begins(t, "nowhere", "nothing is handed on: [live.apply] names no folder to write to")
+            return []
+        written = [_MODEL] if self._write(t, _MODEL, model.to_yaml()) else []
         told = []
         for target in self._rules.targets:
             try:
-                made = export_model(model, target, name="the live model")
+                made = export_model(model, target, name="the live model", options=self._options)
             except SlipwiseError as problem:
                 self._said.begins(t, f"export {target}", f"{target} gets nothing: {problem}")
                 continue
             self._said.ends(t, f"export {target}")
-            self._write(t, find_target(target).file_name, made.text)
+            name = find_target(target).file_name
+            if self._write(t, name, made.text):
+                written.append(name)
+                self._reached.add(target)
             if self._rules.set_parameters:
-                node = self._rules.nodes.get(target, TARGET_NODES[target])
-                told.append(AppliedParameters(t, target, node, dict(made.values)))
+                told += self._to_tell(t, target, made.values)
+        if written:
+            self._said.note(t, f"written to {self._rules.folder}: {', '.join(written)}")
         return told
 
-    def _write(self, t: float, name: str, text: str) -> None:
+    def finish(self, t: float) -> None:
+        """Say which targets got nothing until the end."""
+        missed = [target for target in self._rules.targets if target not in self._reached]
+        if missed:
+            self._said.note(t, f"nothing was ever handed on to {', '.join(missed)}")
+
+    def _to_tell(self, t: float, target: str, values: dict[str, Value]) -> list[AppliedParameters]:
+        """Return what the target's node may be told; what it takes at a restart alone is said once."""
+        node = self._rules.nodes.get(target, TARGET_NODES[target])
+        table = TABLES[target]
+        rows = table.of_distro(self._options.ros_distro if table.differs else None)
+        at_once = {name: value for name, value in values.items() if _may_be_told(rows.get(name))}
+        file = self._path(find_target(target).file_name)
+        if table.no_callback:
+            text = f"{target}: {node} is not told: {table.no_callback}. Restart it with {file}"
+            self._said.begins(t, f"restart {target}", f"{text}; {_OUR_ODOMETRY}")
+            return []
+        later = [name for name, row in rows.items() if name in values and row.effect == "at a restart"]
+        if later:
+            text = f"{target}: {', '.join(later)} take effect when {node} is restarted with {file}"
+            self._said.begins(t, f"restart {target}", f"{text}; {_OUR_ODOMETRY}")
+        if not at_once:
+            return []
+        self._reached.add(target)
+        return [AppliedParameters(t, target, node, dict(at_once), file)]
+
+    def _path(self, name: str) -> str:
         if self._rules.folder is None:
-            return
+            return f"{name} of `slipwise export`"
+        return str(Path(self._rules.folder) / name)
+
+    def _write(self, t: float, name: str, text: str) -> bool:
+        if self._rules.folder is None:
+            return False
         try:
             write_text_whole(Path(self._rules.folder) / name, text)
         except SlipwiseError as problem:
             self._said.begins(t, f"file {name}", str(problem))
             self._said.count("a file that could not be written")
-        else:
-            self._said.ends(t, f"file {name}", f"{name} can be written again")
+            return False
+        self._said.ends(t, f"file {name}", f"{name} can be written again")
+        return True
+
+
+def _may_be_told(row: RosParameter | None) -> bool:
+    return row is not None and row.effect == "at once" and not row.limit

@@ -207,7 +207,6 @@ class LiveNode:
         for output in parts.handover.hand_on(t, parts.applied.model(valid)):
             self._publish(output)
         parts.applied.handed_on(t)
-        parts.said.note(t, "the parameters were handed on")
 
     def _answer(self, request: Request) -> None:
         t, said = self._parts.intake.newest, self._parts.said
@@ -301,6 +300,8 @@ class LiveNode:
         parts = self._parts
         parts.learning.take(parts.intake.events())
         self._look_for_moves(whole=True)
+        if parts.handover is not None:
+            parts.handover.finish(parts.intake.newest)
         self.save()
         self._take_notices()
         for note in parts.said.take_new():

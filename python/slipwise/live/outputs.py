@@ -177,6 +177,7 @@ class AppliedParameters:
     target: str  # such as "mppi"
     node: str  # such as "/controller_server"
     values: dict[str, Any]  # by the parameter's full name
+    file: str = ""  # which holds the same, for a restart of the node
 
 
 Output = Odometry | Path | Status | SurfaceNow | NextMovesNow | ModelText | Note | AppliedParameters

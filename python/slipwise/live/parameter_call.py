@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ROS 2's SetParameters: the request for learned values, and what a node refused."""
+"""ROS 2's parameter services: what a node says of its parameters, and the request to set all or none."""
 
 from __future__ import annotations
 
@@ -12,65 +12,94 @@ import numpy as np
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
-SET_PARAMETERS = "rcl_interfaces/srv/SetParameters"
-REQUEST, RESPONSE = f"{SET_PARAMETERS}_Request", f"{SET_PARAMETERS}_Response"
-_BOOL, _DOUBLE, _STRING, _DOUBLES = 1, 3, 4, 8  # of rcl_interfaces/msg/ParameterType
+DESCRIBE = "rcl_interfaces/srv/DescribeParameters"
+SET = "rcl_interfaces/srv/SetParametersAtomically"
+_BOOL, _DOUBLE, _STRING, _BOOLS, _DOUBLES = 1, 3, 4, 6, 8  # of rcl_interfaces/msg/ParameterType
+_UNKNOWN = 0
+_KINDS = ("no", "bool", "integer", "double", "string", "bytes", "bools", "integers", "doubles", "strings")
 
 
 @dataclass(frozen=True)
-class ParameterRequest:
-    """What a node is asked to take."""
+class Refusals:
+    """Why a node cannot take values while it runs: by parameters."""
 
-    payload: bytes  # CDR with its header
-    names: list[str]  # of the parameters in it
-    left_out: list[str]  # sentences about those that have no type that ROS knows
+    read_only: list[str]
+    others: list[str]  # sentences
+
+    def __bool__(self) -> bool:
+        return bool(self.read_only or self.others)
 
 
-def request_of(values: Mapping[str, Any], store: Typestore) -> ParameterRequest:
-    """Return the request for values by their names."""
+def describe_request(names: Sequence[str], store: Typestore) -> bytes:
+    """Return the request for the descriptors of parameters, CDR with its header."""
+    request = dict(store.types)[f"{DESCRIBE}_Request"](list(names))
+    return bytes(store.serialize_cdr(request, f"{DESCRIBE}_Request"))
+
+
+def refusals(answer: bytes, values: Mapping[str, Any], store: Typestore) -> Refusals:
+    """Return which of the values a node would not take, by its descriptors."""
+    message: Any = store.deserialize_cdr(answer, f"{DESCRIBE}_Response")
+    descriptors = list(message.descriptors)
+    if len(descriptors) != len(values):  # rclcpp describes none where it does not know one
+        return Refusals([], [f"it does not have all of {', '.join(values)}"])
+    found = Refusals([], [])
+    for (name, value), descriptor in zip(values.items(), descriptors, strict=True):
+        if descriptor.read_only:
+            found.read_only.append(name)
+        elif descriptor.type == _UNKNOWN and not descriptor.dynamic_typing:
+            found.others.append(f"it has no {name}")
+        elif descriptor.type not in (kind_of(value), _UNKNOWN) and not descriptor.dynamic_typing:
+            found.others.append(f"its {name} is {_kind_text(descriptor.type)}")
+    return found
+
+
+def set_request(values: Mapping[str, Any], store: Typestore) -> bytes:
+    """Return the request to set all values or none, CDR with its header."""
     types: dict[str, Any] = dict(store.types)
-    parameters, names, left_out = [], [], []
-    for name, value in values.items():
-        made = _value(types, value)
-        if made is None:
-            left_out.append(f"{name} has no type that SetParameters knows")
-        else:
-            parameters.append(types["rcl_interfaces/msg/Parameter"](name, made))
-            names.append(name)
-    return ParameterRequest(bytes(store.serialize_cdr(types[REQUEST](parameters), REQUEST)), names, left_out)
-
-
-def refused(answer: bytes, names: Sequence[str], store: Typestore) -> list[str]:
-    """Return what the node did not take, and why."""
-    message: Any = store.deserialize_cdr(answer, RESPONSE)
-    return [
-        f"{name} was refused: {result.reason or 'without a reason'}"
-        for name, result in zip(names, message.results, strict=False)
-        if not result.successful
+    parameters = [
+        types["rcl_interfaces/msg/Parameter"](name, _value(types, value)) for name, value in values.items()
     ]
+    return bytes(store.serialize_cdr(types[f"{SET}_Request"](parameters), f"{SET}_Request"))
+
+
+def why_refused(answer: bytes, store: Typestore) -> str:
+    """Return why the node took none of the values; empty where it took all."""
+    message: Any = store.deserialize_cdr(answer, f"{SET}_Response")
+    return "" if message.result.successful else (message.result.reason or "it gives no reason")
+
+
+def kind_of(value: Any) -> int:
+    """Return the number of a value's type in `rcl_interfaces/msg/ParameterType`; 0 for what has none."""
+    if isinstance(value, bool):
+        return _BOOL
+    if isinstance(value, float):
+        return _DOUBLE
+    if isinstance(value, str):
+        return _STRING
+    if isinstance(value, list) and value and all(isinstance(item, bool) for item in value):
+        return _BOOLS
+    if isinstance(value, list) and all(isinstance(item, float) for item in value):
+        return _DOUBLES
+    return _UNKNOWN
+
+
+def _kind_text(kind: int) -> str:
+    return f"of type {_KINDS[kind]}" if kind < len(_KINDS) else f"of type {kind}"
 
 
 def _value(types: Mapping[str, Any], value: Any) -> Any:
-    kind = _DOUBLE
-    made: dict[str, Any] = {"bool_value": False, "double_value": 0.0, "string_value": ""}
-    doubles: list[float] = []
-    if isinstance(value, bool):
-        kind, made["bool_value"] = _BOOL, value
-    elif isinstance(value, float):
-        made["double_value"] = value
-    elif isinstance(value, str):
-        kind, made["string_value"] = _STRING, value
-    elif isinstance(value, list) and all(isinstance(item, float) for item in value):
-        kind, doubles = _DOUBLES, value
-    else:
-        return None
+    kind = kind_of(value)
+    if kind == _UNKNOWN:
+        raise TypeError(f"a parameter cannot be {value!r}")
     return types["rcl_interfaces/msg/ParameterValue"](
         type=kind,
+        bool_value=value if kind == _BOOL else False,
         integer_value=0,
+        double_value=value if kind == _DOUBLE else 0.0,
+        string_value=value if kind == _STRING else "",
         byte_array_value=np.zeros(0, np.uint8),
-        bool_array_value=np.zeros(0, np.bool_),
+        bool_array_value=np.array(value if kind == _BOOLS else [], np.bool_),
         integer_array_value=np.zeros(0, np.int64),
-        double_array_value=np.array(doubles, np.float64),
+        double_array_value=np.array(value if kind == _DOUBLES else [], np.float64),
         string_array_value=[],
-        **made,
     )

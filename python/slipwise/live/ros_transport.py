@@ -14,8 +14,8 @@ from typing import Any
 from slipwise.errors import SlipwiseError
 from slipwise.live.cdr_reader import reader_of
 from slipwise.live.listeners import Listeners
+from slipwise.live.node_parameters import NodeParameters
 from slipwise.live.outputs import AppliedParameters, Output, Status
-from slipwise.live.parameter_call import SET_PARAMETERS, refused, request_of
 from slipwise.live.ros_messages import TOPICS, RosMessages
 from slipwise.live.ros_samples import FixPoses, ToPose, to_command, to_gyro, to_pose, to_wheels
 from slipwise.live.samples import Override, Pose, Request, SurfaceCue
@@ -30,7 +30,6 @@ from slipwise.logs.topics import Roles
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 BOOL, EMPTY, STRING = "std_msgs/msg/Bool", "std_msgs/msg/Empty", "std_msgs/msg/String"
 DIAGNOSTICS_EVERY = 1.0  # s of the wall clock
-ANSWER_WITHIN = 2.0  # s, of a node whose parameters are set
 
 ToSample = Callable[[Any, float], Any]
 
@@ -212,15 +211,11 @@ class RosTransport:
         self._wire.subscribe(topic, kind, take)
 
     def _call_nodes(self) -> None:
+        nodes = NodeParameters(self._wire, self._reading)
         while (applied := self._calls.get()) is not None:
-            request = request_of(applied.values, self._reading)
-            service = f"{applied.node}/set_parameters"
-            answer = self._wire.call(service, SET_PARAMETERS, request.payload, timeout=ANSWER_WITHIN)
-            if answer is None:
-                self._notices.put(f"{applied.node} does not answer: its parameters are as they were")
-                continue
-            for text in (*request.left_out, *refused(answer, request.names, self._reading)):
-                self._notices.put(f"{applied.node}: {text}")
+            said = nodes.set(applied)
+            if said:
+                self._notices.put(said)
 
 
 def _from_source(convert: ToPose, source: str) -> ToSample:

@@ -13,6 +13,14 @@ if TYPE_CHECKING:
 
 #: What rosbags does not bring: services, by the fields of request and response.
 _SERVICES: dict[str, tuple[dict[str, str], dict[str, str]]] = {
+    "rcl_interfaces/srv/DescribeParameters": (
+        {"names": "string[]"},
+        {"descriptors": "rcl_interfaces/msg/ParameterDescriptor[]"},
+    ),
+    "rcl_interfaces/srv/SetParametersAtomically": (
+        {"parameters": "rcl_interfaces/msg/Parameter[]"},
+        {"result": "rcl_interfaces/msg/SetParametersResult"},
+    ),
     "rcl_interfaces/srv/SetParameters": (
         {"parameters": "rcl_interfaces/msg/Parameter[]"},
         {"results": "rcl_interfaces/msg/SetParametersResult[]"},
