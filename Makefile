@@ -20,12 +20,12 @@ unexport PYTHONPATH PYTHONHOME CONDA_PREFIX
 
 CPP_SOURCES := $(shell find cpp/include cpp/src python/bindings -type f 2>/dev/null)
 CPP_FORMATTED = $$(find cpp python/bindings python/tests/integrations integrations -name '*.hpp' -o -name '*.cpp' -o -name '*.cu')
-PYTHON_CHECKED := python/slipwise tools
+PYTHON_CHECKED := python/slipwise tools packages/slipwise-sim/slipwise_sim packages/slipwise-thesis/slipwise_thesis
 
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help env build demo fuzz ros-peer test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
+.PHONY: help env build all demo fuzz ros-peer test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
   lint-format lint-headers lint-tidy format bench thesis docs wheel clean distclean FORCE
 
 help: ## list the targets
@@ -35,7 +35,9 @@ env: $(STAMPS)/native ## create .venv and install what building slipwise needs
 
 build: $(STAMPS)/slipwise ## build the C++ core and install slipwise into .venv
 
-demo: build ## simulate a robot, learn its model, score it, write a report
+all: $(STAMPS)/thesis ## build slipwise and install all packages of this repository into .venv
+
+demo: $(STAMPS)/sim ## simulate a robot, learn its model, score it, write a report
 	@$(VENV)/bin/slipwise demo $(ARGS)
 
 test: ## run the quick tests, C++ and Python
@@ -118,6 +120,7 @@ wheel: $(STAMPS)/env ## build a plain wheel into build/dist and try it
 	@$(PYTHON_IN) -m venv build/wheel/empty
 	@PIP_CONSTRAINT=constraints.txt PIP_BUILD_CONSTRAINT=constraints.txt build/wheel/empty/bin/python -m pip wheel --quiet \
 	  --no-deps --config-settings=build-dir=build/wheel/cmake --wheel-dir build/dist .
+	@build/wheel/empty/bin/python -m pip wheel --quiet --no-deps --wheel-dir build/dist packages/slipwise-sim
 	@$(PYTHON_IN) tools/try_wheel.py build/dist
 
 docs: $(STAMPS)/docs ## build the pages as a site into build/site
@@ -144,9 +147,9 @@ $(STAMPS)/native: $(STAMPS)/env pyproject.toml constraints.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/native.txt
 	@touch $@
 
-$(STAMPS)/dev: pyproject.toml constraints.txt | $(STAMPS)/slipwise
+$(STAMPS)/dev: pyproject.toml constraints.txt | $(STAMPS)/thesis
 	@echo "installing what the tests and checks need"
-	@$(PYTHON_IN) tools/requirements.py dev docs thesis fleet foxglove live mavlink px4 remote ros2 terrain viz > $(STAMPS)/dev.txt
+	@$(PYTHON_IN) tools/requirements.py dev docs gp plot fleet foxglove live mavlink px4 remote ros2 terrain viz > $(STAMPS)/dev.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/dev.txt
 	@touch $@
 
@@ -154,12 +157,6 @@ $(STAMPS)/bench: $(STAMPS)/dev
 	@echo "installing what the benchmarks need"
 	@$(PYTHON_IN) tools/requirements.py bench > $(STAMPS)/bench.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/bench.txt
-	@touch $@
-
-$(STAMPS)/thesis: pyproject.toml constraints.txt | $(STAMPS)/slipwise
-	@echo "installing what the thesis's figures need"
-	@$(PYTHON_IN) tools/requirements.py thesis > $(STAMPS)/thesis.txt
-	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/thesis.txt
 	@touch $@
 
 $(STAMPS)/docs: $(STAMPS)/env pyproject.toml constraints.txt
@@ -182,9 +179,24 @@ $(STAMPS)/python-files: $(STAMPS)/env FORCE
 	@find python/slipwise -type f ! -path '*/__pycache__/*' ! -name '_core.*' | sort > $@.new
 	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
+# Packages beside slipwise: what each requires of others, then the package itself.
+define install_package
+	@echo "installing $(1)"
+	@$(PYTHON_IN) tools/requirements.py packages/$(1) > $(STAMPS)/$(1).txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/$(1).txt
+	@$(PIP) install --quiet --no-index --no-deps --no-build-isolation --editable packages/$(1)
+	@touch $@
+endef
+
+$(STAMPS)/sim: packages/slipwise-sim/pyproject.toml constraints.txt | $(STAMPS)/slipwise
+	$(call install_package,slipwise-sim)
+
+$(STAMPS)/thesis: packages/slipwise-thesis/pyproject.toml constraints.txt | $(STAMPS)/sim
+	$(call install_package,slipwise-thesis)
+
 # What pip fetches is installed while the core is compiled; afterwards only where the requirements have changed.
 $(STAMPS)/slipwise: $(STAMPS)/native $(STAMPS)/python-files pyproject.toml constraints.txt CMakeLists.txt CMakePresets.json $(CPP_SOURCES)
-	@$(PYTHON_IN) tools/build.py $(if $(filter pyproject.toml constraints.txt,$?),run sim)
+	@$(PYTHON_IN) tools/build.py $(if $(filter pyproject.toml constraints.txt,$?),run)
 	@cp $(VENV)/lib/python3*/site-packages/slipwise/_core.pyi python/slipwise/_core.pyi
 	@touch $@
 

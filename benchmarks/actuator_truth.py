@@ -30,9 +30,9 @@ from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.learner import CASCADED, Posterior, posterior_of
 from slipwise.logs import Inputs, Log, Poses
 from slipwise.segments import recording_of
-from slipwise.simulation import LandTamer, Scenario, simulate
-from slipwise.simulation.known_robot import KnownRobot, Pair, known_run
-from slipwise.simulation.truth import Truth
+from slipwise_sim import LandTamer, Scenario, simulate
+from slipwise_sim.known_robot import KnownRobot, Pair, known_run
+from slipwise_sim.truth import Truth
 
 Floats = NDArray[np.float64]
 Slips = Callable[[Floats, Floats], Sequence[Floats]]  # what of v and omega a twist is a sum of

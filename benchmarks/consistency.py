@@ -7,7 +7,7 @@ the same filter is fed 20 times a second with overlapping 5 s windows, as the th
 
 A second table has every estimator on shorter drives, with windows that share poses as in a real log, once
 with the noise above and once with poses so noisy that they outweigh the slip noise. The experiment itself is
-`slipwise.thesis.monte_carlo`.
+`slipwise_thesis.monte_carlo`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from slipwise import _core
-from slipwise.thesis.monte_carlo import (
+from slipwise_thesis.monte_carlo import (
     ESTIMATORS,
     NOISE,
     POSE_NOISE,

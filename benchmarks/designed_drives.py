@@ -45,7 +45,7 @@ from slipwise.excitation.moves import command_periods
 from slipwise.excitation.robots import PERIOD
 from slipwise.logs import Inputs, Log
 from slipwise.models import Model
-from slipwise.simulation import Scenario, simulate
+from slipwise_sim import Scenario, simulate
 
 SPACE = CommandSpace(3.0, 2.0, 4.0)
 COUNTS = (5, 10, 20)

@@ -22,8 +22,8 @@ from data_sets import data_folder, data_sets
 from slipwise import _core
 from slipwise.logs import Log, open_log, save_log
 from slipwise.logs.log import Inputs, Poses, Run
-from slipwise.simulation import thesis_drive
-from slipwise.simulation.known_robot import KnownRobot, known_run
+from slipwise_sim import thesis_drive
+from slipwise_sim.known_robot import KnownRobot, known_run
 
 VEHICLES = 20  # simulated
 DAY = 86400.0  # s

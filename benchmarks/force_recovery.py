@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from slipwise.calibration import Calibration, calibrate, make_settings
 from slipwise.logs import Inputs
-from slipwise.simulation import Scenario, Simulation, simulate
-from slipwise.simulation.push import Push, StuckWheel
+from slipwise_sim import Scenario, Simulation, simulate
+from slipwise_sim.push import Push, StuckWheel
 
 Floats = NDArray[np.float64]
 

@@ -25,7 +25,7 @@ from slipwise import _core
 from slipwise.calibration.judgement import judgement_of
 from slipwise.calibration.learner import STRUCTURES
 from slipwise.logs.log import Inputs, Log, Source
-from slipwise.simulation.known_robot import KnownRobot, known_run
+from slipwise_sim.known_robot import KnownRobot, known_run
 
 KINDS = ("ideal", "slip", "delay")
 SEEDS = 10

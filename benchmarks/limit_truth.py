@@ -24,7 +24,7 @@ from limited_drives import CHANNELS, FREE, SIDES, TRACK, search, true_value
 
 from slipwise import _core
 from slipwise.calibration.limit_words import limits_advice
-from slipwise.simulation import dull_drive, steps_drive
+from slipwise_sim import dull_drive, steps_drive
 
 SECONDS = 120.0
 FAR = _core.AxisLimits(0.0, 4.0, 30.0, 30.0)  # beyond what a dull drive shows

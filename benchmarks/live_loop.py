@@ -20,11 +20,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.demo.closed_loop import EACH_FLOOR, VARIANTS, VENDOR, drive_all, floor_model
-from slipwise.demo.slalom_course import FLOORS
-from slipwise.demo.tracking_score import SETTLED, Tracking, tracking
 from slipwise.files import write_text_whole
 from slipwise.models import Model
+from slipwise_sim.demo.closed_loop import EACH_FLOOR, VARIANTS, VENDOR, drive_all, floor_model
+from slipwise_sim.demo.slalom_course import FLOORS
+from slipwise_sim.demo.tracking_score import SETTLED, Tracking, tracking
 
 Floats = NDArray[np.float64]
 Scores = dict[str, Tracking]

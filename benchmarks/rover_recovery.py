@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 import slipwise as sw
 from slipwise import _core
 from slipwise.calibration import make_settings
-from slipwise.simulation.rover import RoughGround, Rover, swerve_base
-from slipwise.simulation.rover_drive import RoverDrive, drive_rover, mean_twists, rover_commands, true_slip
+from slipwise_sim.rover import RoughGround, Rover, swerve_base
+from slipwise_sim.rover_drive import RoverDrive, drive_rover, mean_twists, rover_commands, true_slip
 
 Floats = NDArray[np.float64]
 

@@ -21,7 +21,7 @@ from slipwise.planning import (
     learned_motions,
     vendor_motion,
 )
-from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
+from slipwise_sim import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
 
 SPEED = 1.2  # m/s
 LENGTH, WAVE, SIDE = 30.0, 12.0, 1.5  # m along x, of one period, to each side

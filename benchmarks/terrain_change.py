@@ -29,7 +29,7 @@ from slipwise.calibration.estimators import learned_parts
 from slipwise.calibration.prepared_run import WindowSet, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log
-from slipwise.simulation import Scenario, TerrainChange, TyreLaw, simulate
+from slipwise_sim import Scenario, TerrainChange, TyreLaw, simulate
 
 Floats = NDArray[np.float64]
 

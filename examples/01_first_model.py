@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 import slipwise as sw
-from slipwise.simulation import Scenario, simulate
+from slipwise_sim import Scenario, simulate
 
 log = simulate(Scenario(duration=150.0), seed=3).log
 

@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 import slipwise as sw
-from slipwise.simulation import Scenario, simulate
+from slipwise_sim import Scenario, simulate
 
 log = simulate(Scenario(duration=150.0), seed=4).log
 settings = sw.make_settings(

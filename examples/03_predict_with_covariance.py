@@ -14,7 +14,7 @@ import itertools
 import numpy as np
 
 import slipwise as sw
-from slipwise.simulation import Scenario, simulate
+from slipwise_sim import Scenario, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
 model = sw.calibrate(log, input="command").model

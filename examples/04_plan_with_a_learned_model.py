@@ -14,7 +14,7 @@ import numpy as np
 
 import slipwise as sw
 from slipwise import planning
-from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
+from slipwise_sim import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
 model = sw.calibrate(log, input="command").model

@@ -12,7 +12,7 @@ import numpy as np
 
 import slipwise as sw
 from slipwise.planning import Controller, Motion, MppiOptions, ReferencePath, baseline_motion, learned_motions
-from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
+from slipwise_sim import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
 model = sw.calibrate(log, input="command").model

@@ -16,7 +16,7 @@ import numpy as np
 import plotly.graph_objects as go
 
 import slipwise as sw
-from slipwise.simulation import Scenario, simulate
+from slipwise_sim import Scenario, simulate
 
 folder = Path(tempfile.mkdtemp())
 sw.save_log(simulate(Scenario(duration=150.0), seed=3).log, folder / "run.mcap")

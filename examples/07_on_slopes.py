@@ -12,8 +12,8 @@ import numpy as np
 
 import slipwise as sw
 from slipwise.ground import Grade
-from slipwise.simulation import Scenario, simulate
-from slipwise.simulation.hillside import traverse_drive
+from slipwise_sim import Scenario, simulate
+from slipwise_sim.hillside import traverse_drive
 
 hill = Grade(slope=np.radians(8.0), downhill=-1.2)
 course = Scenario(duration=200.0, grade=hill, commands=traverse_drive(1, 200.0))

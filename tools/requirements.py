@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def requirements(project: dict[str, Any], part: str) -> list[str]:
-    """Return the requirements of `part`: "build", "run", an extra, or a dependency group.
+    """Return the requirements of `part`: "build", "run", an extra, a dependency group, or a package's folder.
 
     An extra that names others of the project, as in "slipwise[plot,sim]", stands for theirs.
 
@@ -22,6 +22,9 @@ def requirements(project: dict[str, Any], part: str) -> list[str]:
     """
     if part == "build":
         return list(project["build-system"]["requires"])
+    if part.startswith("packages/"):
+        beside = tomllib.loads((ROOT / part / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+        return [line for line in beside["dependencies"] if not line.startswith(project["project"]["name"])]
     if part == "run":
         return list(project["project"]["dependencies"])
     extras = project["project"].get("optional-dependencies", {})

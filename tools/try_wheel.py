@@ -76,7 +76,8 @@ def try_wheel(wheel: Path, folder: Path) -> str:
     venv.create(home, with_pip=True)
     python, slipwise = home / "bin/python", home / "bin/slipwise"
     pins = ("--constraint", ROOT / "constraints.txt")
-    said([python, "-m", "pip", "install", "--quiet", *pins, wheel.resolve()], folder)
+    wheels = [wheel.resolve(), *sorted(wheel.parent.resolve().glob("slipwise_sim-*.whl"))]
+    said([python, "-m", "pip", "install", "--quiet", *pins, *wheels], folder)
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     version = said([slipwise, "--version"], folder).strip()
     if version != f"slipwise {project['version']}":
@@ -88,6 +89,8 @@ def try_wheel(wheel: Path, folder: Path) -> str:
     said([slipwise, "calibrate", "drive.csv", "-o", "model.yaml"], folder)
     said([slipwise, "show", "model.yaml"], folder)
     said([slipwise, "live", "--replay", "drive.csv", "--rate", "0", "-q"], folder)
+    if len(wheels) > 1:
+        said([slipwise, "demo", "--duration", "90", "--output", "demo"], folder)
     return version
 
 

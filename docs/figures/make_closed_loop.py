@@ -9,10 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from slipwise.demo.closed_loop import EACH_FLOOR, FIRST_FLOOR, LIVE, VENDOR, Driven, drive_all, floor_model
-from slipwise.demo.slalom_course import FLOORS, SlalomCourse, slalom_course
 from slipwise.files import write_whole
 from slipwise.reporting.png_picture import drawing_part, small_png
+from slipwise_sim.demo.closed_loop import (
+    EACH_FLOOR,
+    FIRST_FLOOR,
+    LIVE,
+    VENDOR,
+    Driven,
+    drive_all,
+    floor_model,
+)
+from slipwise_sim.demo.slalom_course import FLOORS, SlalomCourse, slalom_course
 
 SEED = 1
 SHOWN = (VENDOR, FIRST_FLOOR, LIVE, EACH_FLOOR)

@@ -14,9 +14,9 @@ from benchmarks.rover_recovery import CASES, Case, Recovery, recover
 from slipwise import _core
 from slipwise.files import write_whole
 from slipwise.reporting.png_picture import drawing_part, small_png
-from slipwise.simulation.engine import load_mujoco
-from slipwise.simulation.rover import RoughGround, rover_mjcf
-from slipwise.simulation.rover_drive import joint_targets, rover_commands
+from slipwise_sim.engine import load_mujoco
+from slipwise_sim.rover import RoughGround, rover_mjcf
+from slipwise_sim.rover_drive import joint_targets, rover_commands
 
 SHOWN = (CASES[2], CASES[0])  # a rover on stones, a swerve base
 DRIVES = 6

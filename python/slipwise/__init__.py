@@ -6,6 +6,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from slipwise.lazy_names import lazy_names
+
 if TYPE_CHECKING:
     from slipwise.api import Calibration, calibrate, evaluate, predict
     from slipwise.calibration import Settings, load_settings, make_settings
@@ -46,7 +48,7 @@ __all__ = [
     "summarise",
 ]
 
-#: Where each public name lives. It is imported at its first use, so that the command line starts at once.
+#: Where each public name lives.
 _HOMES = {
     "slipwise.api": ("Calibration", "calibrate", "evaluate", "predict"),
     "slipwise.calibration": ("Settings", "load_settings", "make_settings"),
@@ -61,14 +63,14 @@ _HOMES = {
 }
 
 
+_public = lazy_names(__name__, _HOMES)
+
+
 def __getattr__(name: str) -> Any:
-    """Import a public name, or the version, at its first use (PEP 562)."""
+    """Import a public name, or the version, at its first use."""
     if name == "__version__":
         return import_module("importlib.metadata").version("slipwise")
-    for home, names in _HOMES.items():
-        if name in names:
-            return getattr(import_module(home), name)
-    raise AttributeError(f"module 'slipwise' has no attribute {name!r}")
+    return _public(name)
 
 
 def __dir__() -> list[str]:

@@ -10,7 +10,7 @@ from sample_positions import BASIS, SECONDS, SLIP, commands
 
 from slipwise.calibration import make_settings
 from slipwise.logs import Poses, Run
-from slipwise.simulation.known_robot import KnownRobot, known_run
+from slipwise_sim.known_robot import KnownRobot, known_run
 
 SETTINGS = make_settings({"basis": "full-linear-6"})
 LOST = 20.0  # s after which a source is lost

@@ -132,9 +132,9 @@ def open_robot(
     """
     table = settings.live
     if source.demo:
-        from slipwise.demo.simulated_robot import SimulatedRobot
+        from slipwise.plugins import ROBOTS, load
 
-        return Robot(SimulatedRobot(seed=source.seed, rate=source.rate), "command", "the slalom")
+        return Robot(load(ROBOTS, "demo")(seed=source.seed, rate=source.rate), "command", "the slalom")
     if source.replay is not None:
         return _replayed(table, options, source.replay, source.rate)
     if table.transport == "stdin":

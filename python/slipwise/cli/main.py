@@ -13,7 +13,6 @@ import typer
 from slipwise.cli.calibrate import calibrate
 from slipwise.cli.compare import compare
 from slipwise.cli.convert import convert
-from slipwise.cli.demo import demo
 from slipwise.cli.errors import exit_code_of
 from slipwise.cli.evaluate import evaluate
 from slipwise.cli.excite import excite
@@ -24,12 +23,11 @@ from slipwise.cli.lattice import lattice
 from slipwise.cli.live import live
 from slipwise.cli.memory_options import BEGIN_WITH_NOTHING, MODEL_ENDINGS
 from slipwise.cli.plan import plan
-from slipwise.cli.reproduce import reproduce
 from slipwise.cli.score import score
 from slipwise.cli.show import show
-from slipwise.cli.simulate import simulate
 from slipwise.cli.surfaces import surfaces
 from slipwise.cli.terrain import terrain
+from slipwise.plugins import COMMANDS, added, refuse_missing
 
 DEBUG = "--debug"
 #: Options that have another name since version 0.2; scripts that use the older one are told, and go on.
@@ -49,7 +47,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 _COMMANDS = (
-    (demo, "See it work: a simulated robot, learned and judged."),
     (inspect, "Say what is in a log and what can be learned."),
     (calibrate, "Learn a motion model from logs."),
     (live, "Learn while the robot drives."),
@@ -62,12 +59,13 @@ _COMMANDS = (
     (plan, "Plan a route through a map with a learned model."),
     (lattice, "Write primitives that the robot can drive, for Nav2."),
     (excite, "Find the drive that teaches most, inside an area."),
-    (simulate, "Record a simulated drive."),
     (convert, "Write logs as a tidy table or as MCAP."),
-    (reproduce, "Make the thesis's figures and tables again."),
 )
 for _command, _summary in _COMMANDS:
     app.command(_command.__name__, short_help=_summary)(_command)
+for _name, _entry in added(COMMANDS).items():
+    _module = _entry.load()
+    app.command(_name, short_help=_module.SUMMARY)(getattr(_module, _name))
 app.add_typer(surfaces, name="surfaces", short_help="Join and name the surfaces that models remember.")
 app.add_typer(terrain, name="terrain", short_help="Name the surface by vibration and motor currents.")
 
@@ -142,6 +140,7 @@ def _invoke(arguments: list[str]) -> int:
     warnings.simplefilter(
         "ignore", FutureWarning
     )  # older names of settings; the run's folder has the new ones
+    refuse_missing(COMMANDS, arguments[0])
     command = typer.main.get_command(app)
     with command.make_context("slipwise", arguments) as context:
         return int(command.invoke(context) or 0)

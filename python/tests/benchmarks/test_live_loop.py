@@ -10,8 +10,8 @@ import live_loop
 import numpy as np
 import pytest
 
-from slipwise.demo.closed_loop import EACH_FLOOR, LIVE, VARIANTS, VENDOR
-from slipwise.demo.tracking_score import Tracking
+from slipwise_sim.demo.closed_loop import EACH_FLOOR, LIVE, VARIANTS, VENDOR
+from slipwise_sim.demo.tracking_score import Tracking
 
 
 def score(mean: float, recovery: float) -> Tracking:

@@ -14,7 +14,7 @@ from slipwise.calibration.core_settings import core_settings
 from slipwise.logs import Log, Run
 from slipwise.logs.contradictions import contradictions
 from slipwise.segments import recording_of
-from slipwise.simulation.known_robot import KnownRobot, known_run
+from slipwise_sim.known_robot import KnownRobot, known_run
 
 BIAS = 0.012  # rad/s
 

@@ -16,7 +16,7 @@ from slipwise.calibration.core_settings import core_settings
 from slipwise.logs import Log, Run, open_log
 from slipwise.logs.log import empty_poses
 from slipwise.segments import recording_of
-from slipwise.simulation.known_robot import KnownRobot, known_run
+from slipwise_sim.known_robot import KnownRobot, known_run
 
 BIAS = 0.012  # rad/s
 SETTINGS = sw.make_settings({"basis": "full-linear-6"})

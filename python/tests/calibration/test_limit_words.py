@@ -9,7 +9,7 @@ from limited_drives import FREE, SIDES, TRACK, search, track_of, wheels_behind
 from slipwise import _core
 from slipwise.calibration.limit_words import doubted_limits, limits_advice
 from slipwise.logs.log import Inputs
-from slipwise.simulation import steps_drive
+from slipwise_sim import steps_drive
 
 NO_LIMITS = _core.CommandLimits(FREE, FREE, FREE, TRACK, 1.0, 1.0)
 

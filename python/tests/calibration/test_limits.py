@@ -26,7 +26,7 @@ from slipwise.planning import Controller, ReferencePath, Start, rollout, sample_
 from slipwise.planning.mppi import learned_motions
 from slipwise.prediction import predict
 from slipwise.segments import recording_of
-from slipwise.simulation import Scenario, dull_drive, simulate, steps_drive
+from slipwise_sim import Scenario, dull_drive, simulate, steps_drive
 
 SLIP = (-0.06, -0.35)  # lon.V, ang.w
 SECONDS = 180.0

@@ -19,7 +19,7 @@ from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import SettingsError
 from slipwise.logs import Log, Run
-from slipwise.simulation.known_robot import KnownRobot, known_run
+from slipwise_sim.known_robot import KnownRobot, known_run
 
 Floats = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import pytest
 
 from slipwise.calibration import calibrate, make_settings
 from slipwise.logs import Log
-from slipwise.simulation import Scenario, TerrainChange, TyreLaw, simulate
+from slipwise_sim import Scenario, TerrainChange, TyreLaw, simulate
 
 pytest.importorskip("mujoco")
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from docs.figures.make_closed_loop import LONGEST, SHADES, SHOWN, draw_errors, draw_paths
 
-from slipwise.demo.closed_loop import VARIANTS, Driven
-from slipwise.demo.slalom_course import FLOORS, slalom_course
-from slipwise.demo.slalom_drive import Trace
+from slipwise_sim.demo.closed_loop import VARIANTS, Driven
+from slipwise_sim.demo.slalom_course import FLOORS, slalom_course
+from slipwise_sim.demo.slalom_drive import Trace
 
 COURSE = slalom_course(1)
 

@@ -21,7 +21,7 @@ COMMAND = re.compile(r"^(?:\.venv/bin/)?slipwise .*")
 def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with what the pages take for granted: a short bag, its model, one with a surface."""
     pytest.importorskip("mujoco", reason="the log is simulated, which needs MuJoCo")
-    from slipwise.simulation import Scenario, simulate
+    from slipwise_sim import Scenario, simulate
 
     folder = tmp_path_factory.mktemp("drive")
     log = simulate(Scenario(duration=90.0), seed=2).log

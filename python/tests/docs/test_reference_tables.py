@@ -115,7 +115,7 @@ def test_every_key_of_the_model_file_is_explained() -> None:
 
 
 def test_names_in_the_notation_exist_in_the_code() -> None:
-    folders = (ROOT / "cpp/include", ROOT / "cpp/src", ROOT / "python/slipwise")
+    folders = (ROOT / "cpp/include", ROOT / "cpp/src", ROOT / "python/slipwise", ROOT / "packages")
     sources = [p for folder in folders for p in folder.rglob("*") if p.suffix in (".hpp", ".cpp", ".py")]
     text = "\n".join(path.read_text(encoding="utf-8") for path in sources)
     words = [

@@ -16,7 +16,7 @@ FIGURES = {2: 1, 3: 1, 4: 10, 5: 3, 6: 7, 8: 1}
 TABLES = {5: 1, 6: 2}
 SECTIONS = {"8.1", "8.1.1", "8.2", "8.3", "8.4"}
 
-PYTHON = re.compile(r"`(slipwise(?:\.\w+)+)`")
+PYTHON = re.compile(r"`(slipwise(?:_sim|_thesis)?(?:\.\w+)+)`")
 CPP = re.compile(r"\[`(\w+)`\]\(\.\./(cpp/include/[\w/]+\.hpp)\)")
 MADE = re.compile(r"(?:figure|table) `([a-z0-9-]+)`")
 
@@ -90,7 +90,7 @@ def test_cpp_names_are_declared_in_their_headers() -> None:
 
 def key_is_written(key: str) -> bool:
     """Whether the reproduction's sources write this key, whole or put together of two strings."""
-    sources = sorted((ROOT / "python/slipwise/thesis").glob("*.py"))
+    sources = sorted((ROOT / "packages/slipwise-thesis/slipwise_thesis").glob("*.py"))
     nodes = [node for path in sources for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
     texts = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
     joined = [node.values[0] for node in nodes if isinstance(node, ast.JoinedStr) and len(node.values) == 2]

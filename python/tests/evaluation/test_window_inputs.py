@@ -6,9 +6,6 @@ from functools import cache
 
 import numpy as np
 from sample_logs import Drive, simulated_log
-
-from slipwise.calibration import make_settings
-from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
 from slipwise.evaluation.window_inputs import (
     BINS,
     BINS_BEFORE,
@@ -18,6 +15,9 @@ from slipwise.evaluation.window_inputs import (
     unwrapped_motion,
     window_inputs,
 )
+
+from slipwise.calibration import make_settings
+from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
 from slipwise.logs import Inputs, Poses
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from slipwise.errors import SettingsError
 from slipwise.excitation import VEHICLES, vehicle_named
-from slipwise.simulation.drive import TOP_SPEED, TOP_YAW_RATE
-from slipwise.simulation.land_tamer import LandTamer
+from slipwise_sim.drive import TOP_SPEED, TOP_YAW_RATE
+from slipwise_sim.land_tamer import LandTamer
 
 
 def test_every_vehicle_has_a_size_and_a_source() -> None:

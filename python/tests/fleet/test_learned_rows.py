@@ -12,8 +12,8 @@ from slipwise.calibration import Settings
 from slipwise.fleet import LogTask, learn_task
 from slipwise.fleet.learned_rows import key_of, log_hash, settings_hash
 from slipwise.logs import Log, save_log
-from slipwise.simulation import thesis_drive
-from slipwise.simulation.known_robot import KnownRobot, known_run
+from slipwise_sim import thesis_drive
+from slipwise_sim.known_robot import KnownRobot, known_run
 
 
 def write_log(path: Path, seed: int, seconds: float = 60.0) -> Path:

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Imports a package's public names at their first use, so that the command line starts at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+from typing import Any
+
+
+def lazy_names(package: str, homes: Mapping[str, Sequence[str]]) -> Callable[[str], Any]:
+    """Return a package's `__getattr__` (PEP 562).
+
+    Args:
+        package: its name.
+        homes: the modules that public names live in, with these names.
+    """
+
+    def get(name: str) -> Any:
+        for home, names in homes.items():
+            if name in names:
+                return getattr(import_module(home), name)
+        raise AttributeError(f"module '{package}' has no attribute {name!r}")
+
+    return get
