@@ -27,7 +27,7 @@ from slipwise.calibration.prepared_run import (
 )
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.settings import AVERAGE, Settings
-from slipwise.calibration.shortage import shortage_advice
+from slipwise.calibration.shortage import shortage_advice, silence
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import LogFacts
@@ -209,10 +209,15 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     if len(windows):
         return
     reasons = "; ".join(f"{item.count} x {item.reason}" for item in windows.left_out)
+    where = ", ".join(source.path for source in log.sources[:3])
+    silent = silence(windows)
+    if silent is not None:
+        what = f"the log has no window to learn from: {silent[0]} ({reasons})"
+        raise LogError(what, where=where, advice=silent[1])
     still = {item.kind for item in windows.left_out} - {"late-pose"} == {"standing-still"}
     raise LogError(
         "the robot never moves in this log" if still else "the log has no window to learn from",
-        where=", ".join(source.path for source in log.sources[:3]),
+        where=where,
         advice=reasons
         or f"poses and inputs must overlap for at least {windows.length:g} s; see `slipwise inspect`",
     )

@@ -43,6 +43,7 @@ class LogTable(BaseModel):
     most_fetched: Positive = MOST_FETCHED  # MiB that a log on a server may have
     poses: str | Several | None = None  # a file beside the log
     pose_clock_offset: Seconds | Literal["auto"] | None = None  # s
+    command_timeout: Positive | None = None  # s
     start: Seconds | None = None  # s
     end: Seconds | None = None  # s
     columns: dict[str, str] = {}  # tidy name: name in the table

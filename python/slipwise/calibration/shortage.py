@@ -7,6 +7,7 @@ from slipwise.calibration.judgement import FEWEST_WINDOWS
 from slipwise.calibration.prepared_run import INPUT_NAMES, WindowSet, collect_windows, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.errors import LogError
+from slipwise.logs.command_timeout import silent_commands
 from slipwise.logs.log import Log
 
 NEEDED = 2 * FEWEST_WINDOWS  # segments, half of which are held out
@@ -28,7 +29,9 @@ def shortage_advice(log: Log, input_name: str, shortest: WindowSet, settings: Se
         shortest: the segments of the shortest horizon that is judged.
         settings: those of learning.
     """
-    advice = [
+    silent = silence(shortest)
+    advice = [] if silent is None else [f"{silent[0][0].upper()}{silent[0][1:]}.", silent[1]]
+    advice += [
         f"Rejected: {item.count} x {item.reason}; {_CURES[item.kind]}."
         for item in sorted(shortest.left_out, key=lambda item: -item.count)
         if item.count >= FEWEST_WINDOWS and item.kind in _CURES
@@ -42,6 +45,14 @@ def shortage_advice(log: Log, input_name: str, shortest: WindowSet, settings: Se
         f"{NEEDED} segments of {shortest.length:g} s, where this log has {len(shortest)}."
     )
     return tuple(advice)
+
+
+def silence(windows: WindowSet) -> tuple[str, str] | None:
+    """Say how rarely commands come, where they do, and what to do about it."""
+    if windows.drive[0].input_name != "command":
+        return None
+    pairs = [(run.inputs, run.run.poses) for run in windows.drive]
+    return silent_commands(pairs, windows.unknown_after)
 
 
 def _segments(log: Log, input_name: str, length: float, settings: Settings) -> int:

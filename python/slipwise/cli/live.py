@@ -149,7 +149,15 @@ def live(
             chosen = live_settings(chosen, {"sources": list(robot.sources)})
         chosen = for_the_ground(chosen, robot.log)
         watchers = watchers_for(shown, chosen.live)
-        built = build_node(robot.transport, robot.input_name, chosen, watchers=watchers, run=robot.run)
+        timeout = None if robot.log is not None else log_options.command_timeout  # a log has it already
+        built = build_node(
+            robot.transport,
+            robot.input_name,
+            chosen,
+            watchers=watchers,
+            run=robot.run,
+            command_timeout=timeout,
+        )
         stopping.node = built.node
         if duration is not None:
             timer = threading.Timer(duration, built.node.stop)

@@ -152,7 +152,12 @@ _LOG_OPTIONS: dict[str, tuple[Any, str, str]] = {
     "pose_clock_offset": (
         str,
         "SECONDS",
-        "Added to the stamps of --poses; `auto` finds it from the motion that log and poses share.",
+        "Added to the stamps of the poses; `auto` finds it from the motion that inputs and poses share.",
+    ),
+    "command_timeout": (
+        float,
+        "SECONDS",
+        "The robot's watchdog ends a command that is not repeated for so long; default: it is held.",
     ),
     "start": (float, "SECONDS", "Leave out what is before, counted from the log's start."),
     "end": (float, "SECONDS", "Leave out what is after, counted from the log's start."),

@@ -39,13 +39,14 @@ class Built:
     said: Said
 
 
-def build_node(
+def build_node(  # noqa: PLR0913 (all that a node is made of)
     transport: Transport,
     input_name: str,
     settings: Settings,
     *,
     watchers: Sequence[Watcher] = (),
     run: str | None = None,
+    command_timeout: float | None = None,
 ) -> Built:
     """Return a node.
 
@@ -55,6 +56,7 @@ def build_node(
         settings: those of learning, and of [live].
         watchers: see all that the node gives.
         run: name of the run that begins; None: the transport says when one does.
+        command_timeout: s after which the robot ends a command that is not repeated.
 
     Raises:
         SettingsError: settings contradict themselves.
@@ -77,7 +79,7 @@ def build_node(
     learning = Learning(learner, start or before, valid, said)
     rules = rules_for(start, reverse=table.gates.reverse, stale_after=table.gates.stale_after)
     gates = Gates(rules, input_name=input_name)
-    intake = Intake(learner, gates, said, input_name=input_name)
+    intake = Intake(learner, gates, said, input_name=input_name, command_timeout=command_timeout)
     if run is not None:
         intake.start_drive(run, DriveStart(table.terrain or "", today()))
     applying = table.apply.mode != "off"

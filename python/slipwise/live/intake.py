@@ -8,6 +8,7 @@ import math
 from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.live.clock_watch import Clock, ClockWatch, Stamped
+from slipwise.live.command_ends import CommandEnds
 from slipwise.live.gates import Gates
 from slipwise.live.move_adviser import Turning
 from slipwise.live.said import Said
@@ -19,7 +20,16 @@ from slipwise.logs.clock_steps import set_back_words
 class Intake:
     """Pushes samples into a learner. Inputs always count; poses are learned from while the gates are open."""
 
-    def __init__(self, learner: MotionLearner, gates: Gates, said: Said, *, input_name: str) -> None:
+    def __init__(
+        self,
+        learner: MotionLearner,
+        gates: Gates,
+        said: Said,
+        *,
+        input_name: str,
+        command_timeout: float | None = None,
+    ) -> None:
+        self._ends = CommandEnds(command_timeout)
         self._learner, self._gates, self._said = learner, gates, said
         self._input = Command if input_name == "command" else Wheels
         self._clock = ClockWatch()
@@ -60,7 +70,10 @@ class Intake:
             self._said.count("the clock was set back")
             self._gates.restart()
             self.surfaces.start_run(f"after the clock was set at {self._clock.newest:.3f} s")
+            self._ends.restart()
         for each in taken:
+            for zero in self._ends.before(each):
+                self._push(zero)
             self._gates.take(each)
             self._push(each)
 
@@ -74,6 +87,7 @@ class Intake:
 
     def _restart(self) -> None:
         self._clock.restart()
+        self._ends.restart()
         self._gates.restart()
 
     def _push(self, sample: Stamped) -> None:

@@ -174,6 +174,7 @@ class _SideSpeeds:
 def to_pose(kind: str, options: LogOptions) -> ToPose:
     """Return what makes a pose of a message of type `kind` and its stamp [s]; not of satellite fixes."""
     values, offset = POSE_VALUES[kind], options.pose_yaw_offset
+    late = late_by(options)
 
     def pose(message: Any, t: float) -> Pose | None:
         x, y, _, *rest = values(message)
@@ -184,9 +185,23 @@ def to_pose(kind: str, options: LogOptions) -> ToPose:
         roll, pitch, yaw = angles
         std_xy, std_yaw = deviation(var_x, var_y), deviation(var_yaw)
         tilt = (roll, pitch) if roll or pitch else (None, None)
-        return Pose(t, x, y, yaw + offset, std_xy, std_yaw, message.header.frame_id, *tilt)
+        return Pose(t + late, x, y, yaw + offset, std_xy, std_yaw, message.header.frame_id, *tilt)
 
     return pose
+
+
+def late_by(options: LogOptions) -> float:
+    """Return what is added to the stamps of poses [s].
+
+    Raises:
+        SettingsError: it is to be found, which takes a whole log.
+    """
+    late = options.pose_clock_offset
+    if isinstance(late, str):
+        raise SettingsError(
+            f"--pose-clock-offset {late} is found from a whole log, not live", advice="give the seconds"
+        )
+    return late or 0.0
 
 
 def to_gyro(message: Any, t: float) -> Gyro | None:
@@ -202,7 +217,7 @@ class FixPoses:
     """
 
     def __init__(self, options: LogOptions, *, headed: bool = True) -> None:
-        self._headed = headed
+        self._headed, self._late = headed, late_by(options)
         self._offset = options.pose_yaw_offset
         self._origin: tuple[float, float, float] | None = None
         self._imu: tuple[float, float, float, float] | None = None  # stamp [s], roll, pitch, yaw [rad]
@@ -224,11 +239,12 @@ class FixPoses:
         std_xy, sort = deviation(*variances), fix_of_status(status)
         frame = message.header.frame_id
         if not self._headed:
-            return Pose(t, x, y, math.nan, std_xy, frame=frame, fix=sort)
+            return Pose(t + self._late, x, y, math.nan, std_xy, frame=frame, fix=sort)
         if self._imu is None or abs(t - self._imu[0]) > OLDEST_IMU:
             return None
         _, roll, pitch, yaw = self._imu
-        return Pose(t, x, y, yaw + self._offset, std_xy, frame=frame, roll=roll, pitch=pitch, fix=sort)
+        yaw += self._offset
+        return Pose(t + self._late, x, y, yaw, std_xy, frame=frame, roll=roll, pitch=pitch, fix=sort)
 
 
 def _row(fix: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from slipwise.logs.command_timeout import REPEAT, silent_commands, stops_after
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.course_heading import course_heading
 from slipwise.logs.driven_windows import driven_windows
@@ -44,8 +45,20 @@ def contradictions(
         if course is None:  # what else a heading seems to do would come from it
             found.append(turned_heading(driven, words, alone=alone))
             found.append(lost_heading(windows, driven, words))
+    if input_name == "command":
+        found.append(_ended_commands(log, unknown_after))
     found.append(repeated_wheels([(inputs, run.poses) for run, inputs in _with(log, "wheel")]))
     return tuple(each for each in found if each is not None)
+
+
+def _ended_commands(log: Log, unknown_after: float) -> Contradiction | None:
+    """Say where the robot stops between commands that are taken to be held."""
+    pairs = [(inputs, run.poses) for run, inputs in _with(log, "command")]
+    stop = stops_after(pairs)
+    if stop is None or stop + REPEAT > unknown_after:
+        return None
+    sentence, advice = silent_commands(pairs, unknown_after) or ("", "")
+    return Contradiction("command-timeout", sentence, (advice,)) if sentence else None
 
 
 def _windows(log: Log, input_name: str, unknown_after: float) -> MotionWindows:

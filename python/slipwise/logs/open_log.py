@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from slipwise.errors import LogError, SettingsError
+from slipwise.logs.command_timeout import with_ended_commands
 from slipwise.logs.corrections import scaled_inputs, turned_poses
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
@@ -122,8 +123,13 @@ def _completed(log: Log, options: LogOptions) -> Log:
         log = with_poses(log, options.poses, options)
         for path in options.other_poses:
             log = with_other_poses(log, path, options)
+    elif options.pose_clock_offset is not None:
+        from slipwise.logs.poses_beside import with_shifted_poses
+
+        log = with_shifted_poses(log, options)
     log = cut_to_span(turned_poses(log, options), options.start, options.end)
     log = replace(log, sideways=options.sideways) if options.sideways else log
+    log = with_ended_commands(log, options.command_timeout)
     if options.car is None:
         return log
     from slipwise.logs.car_commands import with_car_commands

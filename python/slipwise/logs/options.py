@@ -48,7 +48,8 @@ class LogOptions:
     poses: Path | None = None  # a file with the measured poses, beside a log whose own are not used
     other_poses: tuple[Path, ...] = ()  # files of further sources of poses, beside these
     other_pose_topics: tuple[str, ...] = ()  # topics of further sources, beside the pose topic
-    pose_clock_offset: float | str | None = None  # [s] added to its stamps, or "auto" to find it
+    pose_clock_offset: float | str | None = None  # [s] added to stamps of poses, or "auto" to find it
+    command_timeout: float | None = None  # [s] after which the robot ends a command that is not repeated
     start: float | None = None  # [s] from the log's start; what is before is not used
     end: float | None = None  # [s] from the log's start; what is after is not used
     columns: Mapping[str, str] = field(default_factory=dict)  # tidy name -> name in the table
@@ -56,6 +57,9 @@ class LogOptions:
 
     def __post_init__(self) -> None:
         self._take_vehicle()
+        if self.command_timeout is not None and not 0.0 < self.command_timeout < math.inf:
+            what = f"--command-timeout must be a positive number of seconds, not {self.command_timeout}"
+            raise SettingsError(what, advice="such as 0.5, as the robot's watchdog has it")
         for name in ("wheel_radius", "wheel_separation", "wheelbase"):
             value: float | None = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0.0):

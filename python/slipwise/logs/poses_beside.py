@@ -11,7 +11,7 @@ import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Inputs, Log, Run, Source, empty_poses
+from slipwise.logs.log import Inputs, Log, Run, Source, empty_poses, has_course
 from slipwise.logs.navsat import with_course
 from slipwise.logs.options import AUTO, LogOptions
 from slipwise.logs.pose_clock import agreement_at, find_clock_offset, pose_motion
@@ -74,6 +74,35 @@ def with_other_poses(log: Log, path: Path, options: LogOptions) -> Log:
     return replace(beside, runs=runs)
 
 
+def with_shifted_poses(log: Log, options: LogOptions) -> Log:
+    """Return the log with its own poses on the clock of its inputs, by the offset that is given or found.
+
+    Raises:
+        LogError: the offset cannot be found.
+    """
+    if options.pose_clock_offset is None:
+        return log
+    usable = [run for run in log.runs if len(run.poses)]
+    apart = all(a.poses.t[-1] < b.poses.t[0] for a, b in itertools.pairwise(usable))
+    if options.pose_clock_offset == AUTO and not (usable and apart):
+        what = "several runs of the log have the same times, so no offset of clocks can be found"
+        raise LogError(
+            what, where=_first_path(log), advice="give the seconds to add with --pose-clock-offset"
+        )
+    t, x, y, yaw = (
+        np.concatenate([getattr(run.poses, name) for run in usable]) for name in ("t", "x", "y", "yaw")
+    )
+    columns = {"x": x, "y": y} | ({} if has_course(usable) else {"yaw": yaw})
+    stream = RawStream("poses", t, columns, np.arange(len(t)), str)
+    offset, said = _offset(log, stream, Path("its poses"), options)
+    shifted = tuple(replace(run, poses=replace(run.poses, t=run.poses.t + offset)) for run in log.runs)
+    return replace(log, runs=shifted, notes=(*log.notes, *said))
+
+
+def _first_path(log: Log) -> str:
+    return log.sources[0].path if log.sources else ""
+
+
 _CLOCKS = "give --pose-clock-offset auto to find the offset of their clocks, or the seconds to add"
 
 
@@ -122,8 +151,9 @@ def _spans(log: Log, path: Path) -> list[tuple[float, float]]:
     """
     spans = [_span(run) for run in log.runs]
     if all(first > last for first, last in spans):
-        where = log.sources[0].path if log.sources else ""
-        raise LogError("the log has no usable inputs", where=where, advice="see `slipwise inspect`")
+        raise LogError(
+            "the log has no usable inputs", where=_first_path(log), advice="see `slipwise inspect`"
+        )
     known = sorted(span for span in spans if span[0] <= span[1])
     for (_, earlier), (later, _) in itertools.pairwise(known):
         if later < earlier:

@@ -81,6 +81,7 @@ most_unpacked = 64.0
 most_fetched = 32.0
 poses = "p.txt"
 pose_clock_offset = 1.5
+command_timeout = 0.6
 start = 1.0
 end = 2.0
 columns = {}
@@ -147,6 +148,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (log.command_scale, log.wheel_scale) == ((0.5, 1.0), (0.1, -1.0))
     assert (log.pose_yaw_offset, log.most_unpacked, log.most_fetched) == (0.2, 64.0, 32.0)
     assert (log.pose_clock_offset, log.start, log.end, log.unknown_after) == (1.5, 1.0, 2.0, 0.4)
+    assert log.command_timeout == 0.6
     drift = settings.smoothing.drift_settings()
     assert (drift.drift, drift.length) == (_core.Drift.RandomWalk, 20.0)
     assert not settings.average_settings().change.detect

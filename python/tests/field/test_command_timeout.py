@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A robot whose watchdog ends commands: the cause is named with its option, which gives the truth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sample_bags import TWIST, Bag
+from sample_field import FieldDrive, field_drive, field_path, learned, recorder, share_errors, write_poses
+
+from slipwise.calibration import calibrate, make_settings
+from slipwise.errors import LogError, SettingsError
+from slipwise.live.command_ends import WAIT, CommandEnds
+from slipwise.live.samples import Command, Pose
+from slipwise.logs import LogOptions, open_log
+
+
+def rare_commands(tmp_path: Path, drive: FieldDrive, period: float) -> Path:
+    bag = Bag()
+    write_poses(bag, drive)
+    for k in drive.every(period):
+        bag.add(recorder(drive.t[k]), "/cmd_vel", TWIST, bag.twist(*map(float, drive.command[k])))
+    return bag.write(tmp_path / "rare.mcap")
+
+
+def test_a_watchdog_is_named_with_the_option() -> None:
+    path = field_path("cmd_timeout.mcap")
+    words = r"commands come every 1.3 s, and the robot stops about 0.5 s after each.*--command-timeout 0.5"
+    with pytest.raises(LogError, match=words):
+        learned(path)
+    held = calibrate(open_log(path), settings=make_settings({"segment": {"unknown_after": 3.0}}))
+    assert not held.verdict.good
+    assert "the robot stops about 0.5 s after each" in held.verdict.sentence
+    result, said = learned(path, command_timeout=0.5)
+    assert result.verdict.good
+    assert "commands end 0.5 s after each, as given: 75 were not repeated in that time" in said
+    assert np.abs(share_errors(result.model)).max() < 3.0
+
+
+@pytest.mark.parametrize(("timeout", "period"), [(0.4, 1.0), (0.6, 2.0), (1.0, 1.6)])
+def test_how_long_a_watchdog_waits_is_found(tmp_path: Path, timeout: float, period: float) -> None:
+    drive = field_drive(180.0, hold=period, period=period, timeout=timeout)
+    with pytest.raises(LogError, match=rf"stops about {timeout:g} s after each"):
+        learned(rare_commands(tmp_path, drive, period))
+
+
+def test_a_robot_that_holds_its_commands_is_told_of_unknown_after(tmp_path: Path) -> None:
+    drive = field_drive(120.0, hold=1.5, period=1.5)
+    path = rare_commands(tmp_path, drive, 1.5)
+    with pytest.raises(LogError, match=r"commands come every 1.5 s and count as unknown.*unknown_after"):
+        learned(path)
+    result = calibrate(open_log(path), settings=make_settings({"segment": {"unknown_after": 3.0}}))
+    assert not result.verdict.contradictions
+
+
+def test_live_ends_commands_at_the_stamps_of_the_log(tmp_path: Path) -> None:
+    drive = field_drive(30.0, hold=1.2, period=1.2, timeout=0.5)
+    path = rare_commands(tmp_path, drive, 1.2)
+    before, after = open_log(path).runs[0], open_log(path, options=LogOptions(command_timeout=0.5)).runs[0]
+    assert before.commands is not None
+    assert after.commands is not None
+    samples = [
+        *(Command(t, 1.0, 0.0) for t in before.commands.t),
+        *(Pose(t, 0.0, 0.0, 0.0) for t in before.poses.t),
+    ]
+    ends, stamps = CommandEnds(0.5), []
+    for sample in sorted(samples, key=lambda each: each.t):
+        stamps += [zero.t for zero in ends.before(sample)]
+        stamps += [sample.t] if isinstance(sample, Command) else []
+    until = before.poses.t[-1] - WAIT
+    np.testing.assert_array_equal(stamps, after.commands.t[: len(stamps)])
+    assert after.commands.t[len(stamps) :].min(initial=np.inf) >= until
+
+
+def test_an_impossible_timeout_is_refused() -> None:
+    with pytest.raises(SettingsError, match="--command-timeout must be a positive number of seconds"):
+        LogOptions(command_timeout=0.0)
