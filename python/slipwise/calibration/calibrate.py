@@ -22,6 +22,7 @@ from slipwise.calibration.prepared_run import (
     WindowSet,
     choose_input,
     collect_windows,
+    frames_apart,
     has_wheels,
     prepare_run,
 )
@@ -219,6 +220,7 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
         "the robot never moves in this log" if still else "the log has no window to learn from",
         where=where,
         advice=reasons
+        or frames_apart(log)
         or f"poses and inputs must overlap for at least {windows.length:g} s; see `slipwise inspect`",
     )
 

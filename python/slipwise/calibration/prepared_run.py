@@ -173,20 +173,34 @@ def has_wheels(drive: tuple[PreparedRun, ...]) -> bool:
 
 def _nothing_to_use(log: Log, input_name: str) -> str:
     if all(len(run.poses) < 2 for run in log.runs):
-        still = any(len(run.poses) == 1 for run in log.runs)
-        return (
-            "the robot never moves in this log: all its poses are the same"
-            if still
-            else "the log has no poses"
-        )
+        if any(len(run.poses) == 1 for run in log.runs):
+            return "the robot never moves in this log: all its poses are the same"
+        lost = "; ".join(f"{item.count} x {item.reason}" for item in _lost_poses(log))
+        return f"no pose of the log can be used: {lost}" if lost else "the log has no poses"
     if not _input_names(log):
         return "the log has no commands and no wheel speeds"
     return f"the log has no {input_name} input" if input_name == "wheel" else "the log has no commands"
 
 
+def _lost_poses(log: Log) -> tuple[LeftOut, ...]:
+    """Return the poses that were left out."""
+    return tuple(i for i in log.left_out if i.reason.startswith("poses") or i.kind == "no-fix")
+
+
+def frames_apart(log: Log) -> str:
+    """Say that poses change their frame so often that hardly two can be compared; empty where they do not."""
+    poses = sum(len(run.poses) for run in log.runs)
+    frames = sum(len(set(run.poses.frame.tolist())) for run in log.runs)
+    if frames < 2 or 2 * frames < poses:
+        return ""
+    return f"{poses} poses have {frames} frames, and only poses of one frame are compared: give all the same"
+
+
 def _advice(log: Log, input_name: str) -> str:
     """Say what to do; another input is proposed only where the log has it."""
     if all(len(run.poses) < 2 for run in log.runs):
+        if _lost_poses(log):
+            return "look at what writes them, or name another pose topic with --pose-topic"
         return "record where the robot went (RTK, lidar, mocap), or name the pose topic with --pose-topic"
     if input_name in log.advice:
         return log.advice[input_name]

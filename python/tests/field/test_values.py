@@ -15,9 +15,11 @@ from field.conftest import FieldLog
 from sample_logs import Drive, simulated_log
 
 from slipwise import _core
+from slipwise.calibration import calibrate
 from slipwise.errors import LogError
 from slipwise.logs import Log, Run
 from slipwise.logs.contradictions import contradictions
+from slipwise.logs.log import LeftOut, empty_poses
 from slipwise.logs.quality import checked
 
 Slipwise = Callable[..., Result]
@@ -258,3 +260,21 @@ def test_wheels_in_radians_per_minute_are_cured_by_the_option(
     assert "degrees" not in refused.line.partition(":")[0]
     assert "rad/min of wheels of 0.19 m" in refused.line
     assert_true(learned(slipwise, log, "--wheel-scale", f"{0.2 / 60.0},{0.2 / 60.0}"))
+
+
+# Poses that are there and cannot be used
+
+
+def test_poses_that_are_all_left_out_are_said_with_the_reason() -> None:
+    (run,) = sound_log((-0.4, 0.8), 20.0).runs
+    lost = LeftOut("poses with a number missing or impossible", 400, "drive.mcap", "incomplete")
+    log = Log((replace(run, poses=empty_poses()),), left_out=(lost,))
+    with pytest.raises(LogError, match="no pose of the log can be used: 400 x poses with a number missing"):
+        calibrate(log)
+
+
+def test_poses_of_a_frame_each_are_said() -> None:
+    (run,) = sound_log((-0.4, 0.8), 20.0).runs
+    apart = replace(run.poses, frame=np.arange(len(run.poses), dtype=np.int64))
+    with pytest.raises(LogError, match=r"400 poses have 400 frames, .*: give all the same"):
+        calibrate(Log((replace(run, poses=apart),)))
