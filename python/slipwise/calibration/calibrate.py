@@ -251,7 +251,7 @@ def _facts(
     if too_short(len(learned.predictions[learned.judged])):
         shortest = collect_windows(windows.drive, JUDGING_HORIZONS[0], settings.rules())
         shortage = shortage_advice(log, input_name, shortest, settings)
-    return LogFacts(found, shortage, input_name, has_course(log.runs))
+    return LogFacts(found, shortage, input_name, has_course(log.runs), log.clocks_compared)
 
 
 def _range(drive: tuple[PreparedRun, ...]) -> schema.Range:

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from slipwise import _core
@@ -41,6 +42,14 @@ def confounded(posterior: Posterior) -> tuple[Confounded, ...]:
     names = [info.name for info in posterior.motion.parameters]
     pairs = _core.correlated_pairs(posterior.covariance, LOOK_ALIKE)
     return tuple(Confounded(names[p.first], names[p.second], float(p.correlation)) for p in pairs)
+
+
+def longest_delay(names: Sequence[str], values: Sequence[float]) -> float:
+    """Return the longest time from an input to its first effect [s], by the model's own parameters."""
+    found = dict(zip(names, values, strict=True))
+    plain = [found[name] for name in ("delay_v", "delay_omega") if name in found]
+    logs = [math.exp(found[name]) for name in ("log_delay_v", "log_delay_omega") if name in found]
+    return max([*plain, *logs, 0.0])
 
 
 def drives_for(names: tuple[str, ...], *, positions: bool = False) -> tuple[str, ...]:

@@ -236,7 +236,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             made, judgement = model_of_log(learned, log, self._input, self._settings)
             return model_of(self._remembered(made.content, learned), log, ()), judgement
         sensors = Sensors(self._wheels, "", self._gyro_alone)
-        facts = LogFacts((), (), self._input, self._positions)
+        facts = LogFacts((), (), self._input, self._positions, clocks_compared=False)
         judged = judge(to_judge(learned, self._settings, sensors, positions=self._positions), facts)
         slowest, fastest, right, left = model.range
         origin = ModelFacts(

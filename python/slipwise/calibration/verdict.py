@@ -10,6 +10,7 @@ from slipwise.calibration.identifiability import (
     advice_for_pairs,
     confounded,
     drives_for,
+    longest_delay,
     not_identifiable,
     timing_words,
 )
@@ -29,6 +30,11 @@ YAW_RATES_ONLY = (
     "Only yaw rates were measured: slip is learned of turns alone, and predicted positions are those that "
     "the inputs say, along the learned heading."
 )
+_CLOCKS = (
+    "Give --pose-clock-offset auto, or the seconds to add to the stamps of the poses. A bag that is not "
+    "converted tells by its headers how far the clocks are apart."
+)
+LATEST = 1.0  # s from a command to its first effect; no drive takes longer
 FEW = 20  # held-out segments; a gain that shows in fewer may be chance
 
 
@@ -43,6 +49,7 @@ class Identified:
     timing: str = ""
     from_log: str = "the log"  # that the parameters were learned from
     force: str = ""  # what pushes the robot beside its slip
+    delay: float = 0.0  # s, the longest from an input to its first effect
 
 
 @dataclass(frozen=True)
@@ -53,6 +60,7 @@ class LogFacts:
     shortage: tuple[str, ...]  # why there are so few segments, and what to do, where they are too few
     input_name: str
     positions: bool  # only positions were measured
+    clocks_compared: bool  # header stamps were compared with the times of receipt
 
 
 def identified(
@@ -68,16 +76,24 @@ def identified(
     teachable = tuple(name for name in unknown if not (gyro_alone and name.startswith(("lon.", "lat."))))
     advice = (*drives_for(teachable, positions=positions), *advice_for_pairs(pairs))
     timing = timing_words(posterior.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
-    return Identified(len(posterior.mean), unknown, advice, pairs, timing)
+    names = tuple(info.name for info in posterior.motion.parameters)
+    delay = longest_delay(names, posterior.mean.tolist())
+    return Identified(len(posterior.mean), unknown, advice, pairs, timing, delay=delay)
 
 
 def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Verdict:
     """Put a judgement into words: the fault that weighs most, the figures, and what to do."""
     contradicted = tuple(each for each in facts.contradictions if each.spoils)
     fault = (
-        _contradicted(contradicted) or _not_judged(judgement) or _not_better(judgement) or _untrue(judgement)
+        _contradicted(contradicted)
+        or _not_judged(judgement)
+        or _not_better(judgement)
+        or _untrue(judgement)
+        or _too_late(known, facts)
     )
     reservations = _reservations(judgement, facts)
+    if known.delay > LATEST and facts.clocks_compared:
+        reservations = (*reservations, f"It answers after {known.delay:.2g} s, which no drive needs.")
     sentences = [fault]
     if not contradicted and not judgement.too_short:
         figures = (
@@ -85,6 +101,8 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
         )
         sentences += [figures, *reservations, "" if fault else _unknown(known)]
     advice = (*_advice(judgement, facts), *(() if contradicted else known.advice))
+    if not contradicted and _too_late(known, facts):
+        advice = (_CLOCKS, *advice)
     return Verdict(
         not fault,
         " ".join(sentence for sentence in sentences if sentence),
@@ -120,6 +138,15 @@ def _untrue(judgement: Judgement) -> str:
     if judgement.consistency is None or not judgement.consistency.untrue:
         return ""
     return f"{_REFUSED} it beats the kinematic baseline, but what it says of its own errors is not true."
+
+
+def _too_late(known: Identified, facts: LogFacts) -> str:
+    if known.delay <= LATEST or facts.clocks_compared:
+        return ""
+    return (
+        f"{_REFUSED} the poses answer the {_FOLLOWED[facts.input_name]} after {known.delay:.2g} s, later "
+        "than any drive: their clocks are apart."
+    )
 
 
 def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:

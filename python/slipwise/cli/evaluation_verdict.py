@@ -36,7 +36,8 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
     if method is None or source is None:
         return None
     longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
-    facts = LogFacts(evaluation.contradictions, _SHORTAGE, evaluation.input, evaluation.positions)
+    compared = evaluation.clocks_compared
+    facts = LogFacts(evaluation.contradictions, _SHORTAGE, evaluation.input, evaluation.positions, compared)
     verdict = judge(ToJudge(longest[method], longest["none"], _identified(source), ()), facts).verdict
     return replace(verdict, advice=tuple(dict.fromkeys((*verdict.advice, *_more_advice(evaluation, method)))))
 
@@ -46,6 +47,7 @@ _SHORTAGE = ("Evaluate on a longer drive, or with shorter --horizons: these segm
 
 def _identified(source: Calibration | Model) -> Identified:
     from slipwise.calibration import Calibration
+    from slipwise.calibration.identifiability import longest_delay
     from slipwise.calibration.verdict import Identified
 
     calibrated = isinstance(source, Calibration)
@@ -56,6 +58,7 @@ def _identified(source: Calibration | Model) -> Identified:
         tuple(content.verdict.advice),
         timing=content.verdict.timing,
         force=content.verdict.force,
+        delay=longest_delay(tuple(p.name for p in content.parameters), [p.value for p in content.parameters]),
         from_log="the log" if calibrated else "the log that they were learned from",
     )
 

@@ -88,6 +88,7 @@ def evaluate(
         ),
         models=tuple(models),
         positions=has_course(log.runs),
+        clocks_compared=log.clocks_compared,
     )
 
 

@@ -91,6 +91,7 @@ class Evaluation:
     models: tuple[str, ...] = ()  # those of the methods that are model files as they are
     contradictions: tuple[Contradiction, ...] = ()  # between the poses and the inputs of the log
     positions: bool = False  # only positions were measured
+    clocks_compared: bool = False  # header stamps were compared with the times of receipt
 
     def __repr__(self) -> str:
         longest = max(self.horizons)

@@ -88,12 +88,12 @@ def read_bag(path: Path, options: LogOptions) -> Log:
             advice = {role: _with_joints(bag, text, options) for role, text in roles.advice.items()}
             notes = [*roles.guessed, *advice.values(), *bag.missing]
             context = BagContext(path.name, options, tally, notes)
-            runs = _runs_of_parts(path, roles, collected, context, file_missing=bool(bag.missing))
+            runs, compared = _runs_of_parts(path, roles, collected, context, file_missing=bool(bag.missing))
         except LogError as error:
             raise _told_of_bag(error, path, bag.topics, tally) from error
         count = sum(topic.count for topic in bag.topics)
         file = Source(str(path), files_sha256(files), bag.format, count)
-    return Log(runs, (file,), tally.result(), tuple(dict.fromkeys(notes)), advice)
+    return Log(runs, (file,), tally.result(), tuple(dict.fromkeys(notes)), advice, compared)
 
 
 def collect_transforms(bag: BagFile, options: LogOptions) -> TransformCollector:
@@ -208,20 +208,27 @@ def joint_values(options: LogOptions) -> Callable[[Any], tuple[float, ...]]:
 
 def _runs_of_parts(
     path: Path, roles: Roles, collected: Collected, context: BagContext, *, file_missing: bool
-) -> tuple[Run, ...]:
-    """Make runs of each part of the bag; a clock that was set back or a missing file begins another."""
+) -> tuple[tuple[Run, ...], bool]:
+    """Make runs of each part of the bag; a clock that was set back or a missing file begins another.
+
+    Returns:
+        the runs, and whether header stamps could be compared with the times of receipt.
+    """
     if roles.pose is not None and roles.pose.type != TF and len(collected.samples["pose"].values) == 0:
         raise LogError(f"no pose could be read from {roles.pose.name}", advice="give --pose-topic")
     parts, begins = parts_of(collected, file_missing=file_missing)
     context.notes.extend(begins)
-    runs: list[Run] = []
+    runs, compared = list[Run](), True
     for number, part in enumerate(parts, start=1):
-        found = _runs(path, roles, part, context)
+        found, told = _runs(path, roles, part, context)
+        compared = compared and told
         runs += found if number == 1 else [replace(run, name=f"{run.name}, part {number}") for run in found]
-    return tuple(run for run in runs if len(parts) == 1 or len(run.poses))
+    return tuple(run for run in runs if len(parts) == 1 or len(run.poses)), compared
 
 
-def _runs(path: Path, roles: Roles, collected: Collected, context: BagContext) -> tuple[Run, ...]:
+def _runs(
+    path: Path, roles: Roles, collected: Collected, context: BagContext
+) -> tuple[tuple[Run, ...], bool]:
     samples, notes = dict(collected.samples), context.notes
     if roles.pose is not None and roles.pose.type == TF:
         samples["pose"] = _transform_samples(roles.pose, collected.transforms, context)
@@ -243,7 +250,8 @@ def _runs(path: Path, roles: Roles, collected: Collected, context: BagContext) -
     runs = _split(path, collected, (commands, wheels, poses), context.tally)
     if roles.gyro is not None and (poses is None or poses.course):
         runs = with_gyro(runs, gyro_stream(context, samples["gyro"]), collected.starts)
-    return _with_others(runs, collected, others, roles, context.tally) if others else runs
+    runs = _with_others(runs, collected, others, roles, context.tally) if others else runs
+    return runs, clocks.compared
 
 
 def _other_streams(

@@ -14,6 +14,7 @@ AHEAD = 0.02  # s; no message is stamped later than it is received: from here on
 LATENCY = 1.0  # s; no sensor takes so long: beyond it the clock is behind
 _SHARED = 0.5  # s by which streams on one clock may be delayed differently
 _PROMPT = 0.05  # s; headers that are as close to receipt as this are on the bag's clock
+_COPIED = 1e-5  # s; headers all as close to receipt are copies of it, by a program that converts
 _FEWEST = 10  # messages,
 _SHORTEST = 2.0  # s of them, below which no rate is measured
 _DRIFT = 0.05  # s over the recording from which on a rate of its own is seen,
@@ -104,7 +105,7 @@ class BagClocks:
     main: HeaderClock | None  # of the poses, or of whatever has headers; None: the recorder's
     shifts: Mapping[str, float]  # s added to the stamps of topics on another clock
     received: frozenset[str] = frozenset()  # topics whose stamps follow no clock, or one of another rate
-    compared: bool = False  # whether there were headers to compare
+    compared: bool = False  # whether headers and receipt tell anything of each other
 
     def by_receipt(self, received: Floats) -> Floats:
         """Date messages [N] without a header, of which the time of receipt [s] is known."""
@@ -167,7 +168,8 @@ def clocks_of(
     elif not main.simulated:  # the least delayed of the streams on its clock tells it best
         leads = [each.offset for name, each in alike.items() if not shifts[name]]
         main = main.moved(max(leads) - main.offset)
-    return BagClocks(main, {name: shift for name, shift in shifts.items() if shift}, lost, compared=True)
+    copied = all(np.abs(r - s).max() < _COPIED for r, s in streams.values() if len(r))
+    return BagClocks(main, {name: shift for name, shift in shifts.items() if shift}, lost, not copied)
 
 
 def _between(main: HeaderClock, other: HeaderClock) -> float:

@@ -172,6 +172,7 @@ class Log:
     left_out: tuple[LeftOut, ...] = ()
     notes: tuple[str, ...] = ()
     advice: Mapping[str, str] = field(default_factory=dict)
+    clocks_compared: bool = False  # header stamps were compared with the times of receipt
     sideways: bool = False  # the vehicle is known to drive sideways too
 
     def __repr__(self) -> str:

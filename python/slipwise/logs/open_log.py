@@ -159,6 +159,7 @@ def joined(logs: list[Log]) -> Log:
         left_out=tuple(entry for log in logs for entry in log.left_out),
         notes=tuple(note for log in logs for note in log.notes),
         advice={name: text for log in reversed(logs) for name, text in log.advice.items()},
+        clocks_compared=all(log.clocks_compared for log in logs),
         sideways=any(log.sideways for log in logs),
     )
 

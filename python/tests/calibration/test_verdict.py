@@ -147,7 +147,7 @@ def test_a_log_that_no_model_can_hold_is_an_error_that_names_the_cause() -> None
 
 
 def facts(contradictions: tuple[Contradiction, ...] = ()) -> LogFacts:
-    return LogFacts(contradictions, (), "command", positions=False)
+    return LogFacts(contradictions, (), "command", positions=False, clocks_compared=False)
 
 
 def test_a_verdict_against_its_own_figures_says_why() -> None:

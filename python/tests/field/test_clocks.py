@@ -80,6 +80,38 @@ def test_a_simulation_that_slows_down_is_followed(tmp_path: Path) -> None:
     assert np.abs(offsets_of_commands(path)).max() < 0.08
 
 
+def late_table(tmp_path: Path, seconds: float) -> Path:
+    drive = field_drive(120.0)
+    rows, poses = [], noisy(drive)
+    for k in drive.every(0.05):
+        v, omega = drive.command[k]
+        rows.append((float(drive.t[k]), f"{v:.4f},{omega:.4f},,,"))
+    for k in drive.every(0.1):
+        x, y, yaw = poses[k]
+        rows.append((float(drive.t[k]) + seconds + 0.001, f",,{x:.4f},{y:.4f},{yaw:.4f}"))
+    lines = [f"{t:.4f},{rest}" for t, rest in sorted(rows)]
+    (tmp_path / "late.csv").write_text("\n".join(["t,cmd_v,cmd_omega,x,y,yaw", *lines]) + "\n")
+    return tmp_path / "late.csv"
+
+
+@pytest.mark.slow
+def test_poses_that_answer_later_than_any_drive_are_not_good_before_their_clock_is_told(
+    tmp_path: Path,
+) -> None:
+    path = late_table(tmp_path, 1.7)
+    result, _ = learned(path)
+    assert not result.verdict.good
+    assert "later than any drive: their clocks are apart" in result.verdict.sentence
+    assert any("--pose-clock-offset auto" in text for text in result.verdict.advice)
+    result, said = learned(path, pose_clock_offset="auto")
+    assert "are added to the stamps of its poses" in said
+    assert result.verdict.good
+    assert np.abs(share_errors(result.model)).max() < 3.0
+    result, said = learned(path, pose_clock_offset=-1.7)
+    assert "-1.7 s are added to the stamps of its poses" in said
+    assert result.verdict.good
+
+
 def test_the_simulated_time_that_was_sent_in() -> None:
     result, said = learned(field_path("sim_clock_mixed.mcap"))
     assert "header stamps run at 0.8 of the bag's clock: /cmd_vel, without a header" in said
