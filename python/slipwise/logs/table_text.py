@@ -14,7 +14,7 @@ from slipwise.errors import LogError
 if TYPE_CHECKING:
     import pyarrow as pa
 
-_START = 1 << 16  # bytes in which the first row is looked for
+_START = 1 << 20  # bytes in which the first row is looked for
 _LINE = re.compile(rb"([^\r\n]*)(\r\n|\n|\r|\Z)")
 _COMMENT = re.compile(rb"(?m)(?:^|(?<=\r))[ \t]*#[^\r\n]*")
 _AROUND = {",": None, "\t": rb"[ ]*\t[ ]*", ";": rb"[ \t]*;[ \t]*", " ": rb"[ \t]+"}  # a cell's end
@@ -64,7 +64,8 @@ def table_text(content: pa.Buffer, path: Path) -> TableText:
     names = cells
     if not named:
         commented = _cells(comment, separator, path)
-        named = len(commented) == len(cells) and len(set(commented)) == len(cells) and all(commented)
+        named = len(commented) == len(cells) == len({*commented} - {""})
+        named = named and not any(map(_is_number, commented))
         names = commented if named else [str(number) for number in range(len(cells))]
         begin, line = first.start, first.number
     else:

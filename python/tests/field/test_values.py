@@ -66,6 +66,7 @@ def rows_of(path: Path) -> list[list[str]]:
         ("t\todo_v\todo_omega\n", "\t"),
         ("t;odo_v;odo_omega\n", " ; "),
         ("\n# of the morning\n\nt odo_v odo_omega\n# not the names\n", "   "),
+        ("# t odo_v odo_omega\n\n", " "),
     ],
 )
 def test_cells_may_be_separated_otherwise_and_names_stand_in_a_comment(
