@@ -8,11 +8,23 @@ from slipwise.calibration.judgement import Judgement, Ratio
 from slipwise.models.schema import HeldOut
 
 BETTER: Ratio = (0.5, 0.4, 0.6)
-TRUE = Consistency(nis=3.1, segments=30, band=(2.2, 3.9), inside=0.95)
+
+
+def ellipsoids(inside: float, nis: float = 3.1, *, segments: int = 30, factor: float = 1.0) -> Consistency:
+    """The 95 % ellipsoids hold a part of the segments."""
+    return Consistency(segments, (0.5, 0.8 * inside, inside), nis, 4.0 * nis, factor)
+
+
+TRUE = ellipsoids(0.95)
 
 
 def judged(
-    position: Ratio, heading: Ratio, consistency: Consistency | None = None, *, windows: int = 9
+    position: Ratio,
+    heading: Ratio,
+    consistency: Consistency | None = None,
+    *,
+    windows: int = 9,
+    still: Ratio = (0.1, 0.05, 0.2),
 ) -> Judgement:
     """A judgement with these ratios to a baseline that errs by 1 m and 1 rad after 5 s."""
     errors = [0.0 if ratio[0] != ratio[0] else ratio[0] for ratio in (position, heading)]
@@ -25,4 +37,4 @@ def judged(
         baseline_position=baseline[0],
         baseline_heading=baseline[1],
     )
-    return Judgement(held_out, position, heading, consistency)
+    return Judgement(held_out, position, heading, still, consistency)

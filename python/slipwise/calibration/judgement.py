@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The held-out comparison of a method with the kinematic baseline: is it better, and if not, why."""
+"""The held-out comparison of a method with the kinematic baseline and with a robot that stands still."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ from slipwise.number_text import number_text
 
 FEWEST_WINDOWS = 4  # held-out segments; fewer cannot be judged
 MUCH = 1.2  # ratio to the baseline beyond which an error is worse by a fault of the log, not by chance
+LEAST_EXPLAINED = 0.5  # of the motion; a model that explains less follows inputs of something else
 SAME = 1.01  # ratio to the baseline up to which an error counts as the same; both print alike then
 
 Ratio = tuple[float, float, float]  # of two mean errors, with its 95 % interval
+_UNKNOWN: Ratio = (np.nan, np.nan, np.nan)
 
 
 @dataclass(frozen=True)
@@ -27,12 +29,23 @@ class Judgement:
     held_out: HeldOut  # as `evaluate` shows them
     position_ratio: Ratio
     heading_ratio: Ratio
+    still_ratio: Ratio  # mean error over the mean motion, which is the error of a robot said to stand still
     consistency: Consistency | None = None
 
     @property
     def too_short(self) -> bool:
         """Whether there are too few segments to judge."""
         return self.held_out.segments < FEWEST_WINDOWS
+
+    @property
+    def explained(self) -> float:
+        """The part of the motion that the inputs explain: 1 where predictions are right, 0 as for a rock."""
+        return 1.0 - self.still_ratio[0]
+
+    @property
+    def unexplained(self) -> bool:
+        """Whether the inputs explain too little of the motion."""
+        return self.explained < LEAST_EXPLAINED
 
     @property
     def beats_baseline(self) -> bool:
@@ -83,11 +96,17 @@ def judgement_of(learned: Predictions, baseline: Predictions) -> Judgement:
         baseline_heading=_mean(baseline.heading_error[half]),
     )
     if held_out.segments == 0:
-        return Judgement(held_out, (np.nan, np.nan, np.nan), (np.nan, np.nan, np.nan))
+        return Judgement(held_out, _UNKNOWN, _UNKNOWN, _UNKNOWN)
+    error, motion = (
+        (learned.heading_error, learned.turn)
+        if held_out.turns_alone
+        else (learned.position_error, learned.distance)
+    )
     return Judgement(
         held_out,
         ratio_of_means(learned.position_error[half], baseline.position_error[half]),
         ratio_of_means(learned.heading_error[half], baseline.heading_error[half]),
+        ratio_of_means(error[half], motion[half]),
         consistency_of(learned),
     )
 

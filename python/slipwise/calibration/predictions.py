@@ -60,6 +60,16 @@ class Predictions:
         return np.abs(self.residual[:, 2])
 
     @property
+    def distance(self) -> Floats:
+        """How far the robot went in a straight line, [N] m: the position error of one said to stand still."""
+        return np.hypot(self.measured[:, 0], self.measured[:, 1])
+
+    @property
+    def turn(self) -> Floats:
+        """How far it turned, to half a turn, [N] rad: the heading error of one said to stand still."""
+        return np.abs(residual(self.measured, np.zeros_like(self.measured))[:, 2])
+
+    @property
     def nis(self) -> Floats:
         """Normalised innovation squared, [N]; 3 on average where the covariance is true."""
         return normalised_squared(self.residual, self.covariance)

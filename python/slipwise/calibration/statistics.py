@@ -100,6 +100,14 @@ def chi_square_band(count: int, degrees: int) -> tuple[float, float]:
     return (float(low), float(high))
 
 
+def share_interval(share: float, count: int) -> tuple[float, float]:
+    """95 % interval of a probability of which `count` independent trials show `share` (Wilson 1927)."""
+    z = 1.959963984540054
+    middle = (share + z * z / (2.0 * count)) / (1.0 + z * z / count)
+    width = z * np.sqrt(share * (1.0 - share) / count + z * z / (4.0 * count * count)) / (1.0 + z * z / count)
+    return (float(middle - width), float(middle + width))
+
+
 def coverage(inside: Floats) -> Shares:
     """Fraction of windows inside the 50, 90 and 95 % ellipsoids of their t, from `Predictions.inside`."""
     return _shares(inside, ELLIPSOIDS)

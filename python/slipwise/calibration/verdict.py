@@ -14,11 +14,12 @@ from slipwise.calibration.identifiability import (
     not_identifiable,
     timing_words,
 )
-from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement
+from slipwise.calibration.judgement import FEWEST_WINDOWS, LEAST_EXPLAINED, Judgement
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.result import Verdict
 from slipwise.logs.contradiction import Contradiction
 from slipwise.models.schema import HeldOut
+from slipwise.number_text import number_text
 
 _REFUSED = "Do not use this model:"
 _FOLLOWED = {"command": "commands", "wheel": "wheels"}
@@ -87,6 +88,7 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
     fault = (
         _contradicted(contradicted)
         or _not_judged(judgement)
+        or _unexplained(judgement, facts)
         or _not_better(judgement)
         or _untrue(judgement)
         or _too_late(known, facts)
@@ -100,7 +102,8 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
             _turns(judgement.held_out) if judgement.held_out.turns_alone else _figures(judgement.held_out)
         )
         sentences += [figures, *reservations, "" if fault else _unknown(known)]
-    advice = (*_advice(judgement, facts), *(() if contradicted else known.advice))
+    of_nothing = contradicted or (judgement.unexplained and not judgement.too_short)
+    advice = (*_advice(judgement, facts), *(() if of_nothing else known.advice))
     if not contradicted and _too_late(known, facts):
         advice = (_CLOCKS, *advice)
     return Verdict(
@@ -126,6 +129,21 @@ def _not_judged(judgement: Judgement) -> str:
     return (
         f"Too little driving to judge: {judgement.held_out.segments} held-out segments of "
         f"{judgement.held_out.horizon:g} s, at least {FEWEST_WINDOWS} are needed."
+    )
+
+
+def _unexplained(judgement: Judgement, facts: LogFacts) -> str:
+    """That the inputs say little of how the robot moves: they may be those of another one."""
+    if not judgement.unexplained:
+        return ""
+    held_out, inputs = judgement.held_out, _FOLLOWED[facts.input_name]
+    error, unit = (held_out.heading, "rad") if held_out.turns_alone else (held_out.position, "m")
+    motion = number_text(error / judgement.still_ratio[0])
+    share, least = 100.0 * max(judgement.explained, 0.0), 100.0 * LEAST_EXPLAINED
+    return (
+        f"{_REFUSED} the {inputs} do not explain the poses. They explain {share:.0f} % of the motion, where "
+        f"{least:.0f} % is the least: a robot said to stand still is missed by {motion} {unit} after "
+        f"{held_out.horizon:g} s, by the model it is missed by {number_text(error)} {unit}."
     )
 
 
@@ -191,7 +209,12 @@ def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         return tuple(advice)
     if judgement.too_short:
         return (*facts.shortage, *advice)
-    if judgement.much_worse:
+    if judgement.unexplained:
+        advice.append(
+            f"Check that {_FOLLOWED[facts.input_name]} and poses are of one robot and one drive, on one "
+            "clock, in m/s, rad/s, m and rad."
+        )
+    elif judgement.much_worse:
         advice.append(
             "Look at the report for late poses, pose jumps or a wrong topic; until then use the kinematic "
             "baseline."

@@ -8,7 +8,6 @@ import pytest
 from calibration.test_statistics import predictions
 
 from slipwise.calibration.consistency import Consistency, consistency_of
-from slipwise.calibration.statistics import nis_band
 
 
 def drawn(count: int, scale: float, seed: int = 1) -> Consistency:
@@ -33,8 +32,9 @@ def test_ellipsoids_that_are_too_small_are_named_with_the_factor_that_mends_them
     found = drawn(200, 3.0)
     assert found.too_small
     assert found.nis == pytest.approx(27.0, rel=0.3)
-    assert found.sentence().startswith("Its reported uncertainty is too small: NIS 2")
+    assert found.sentence().startswith("Its reported uncertainty is too small: the 95 % ellipsoids hold ")
     assert found.advice()[0].startswith("Multiply predicted covariances by ")
+    assert found.factor == pytest.approx(9.0, rel=0.3)
     assert drawn(200, 10.0).untrue
 
 
@@ -48,4 +48,15 @@ def test_ellipsoids_that_are_too_large_are_said_where_there_are_enough_segments(
 def test_the_second_half_alone_counts() -> None:
     found = drawn(61, 1.0)
     assert found.segments == 31
-    assert found.band == nis_band(31)
+
+
+def test_few_errors_that_are_very_large_are_heavy_tails_and_no_covariance_to_multiply() -> None:
+    rng = np.random.default_rng(3)
+    errors = rng.standard_normal((200, 3))
+    errors[[101, 130, 171]] *= 20.0
+    found = consistency_of(predictions(errors, np.zeros((200, 3)), np.tile(np.eye(3), (200, 1, 1))))
+    assert found is not None
+    assert found.true
+    assert found.nis > 10.0
+    assert "heavy tails: the 95 % ellipsoids hold 9" in found.sentence()
+    assert "Multiply" not in " ".join(found.advice())

@@ -6,13 +6,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from contradictory_logs import circular, sound_log, stopped
-from judgements import BETTER, TRUE, judged
+from judgements import BETTER, TRUE, ellipsoids, judged
 from sample_logs import Drive, simulated_log
 
 from slipwise import _core
 from slipwise.calibration import Calibration, calibrate, make_settings
 from slipwise.calibration.calibrate import model_of
-from slipwise.calibration.consistency import Consistency
 from slipwise.calibration.identifiability import drives_for
 from slipwise.calibration.judgement import FEWEST_WINDOWS
 from slipwise.calibration.verdict import Identified, LogFacts, give_verdict
@@ -171,23 +170,47 @@ def test_a_worse_error_is_named_with_how_much_worse_it_is() -> None:
     )
 
 
+def test_inputs_that_do_not_explain_the_motion_give_no_good_model_though_it_beats_the_baseline() -> None:
+    verdict = give_verdict(judged(BETTER, BETTER, still=(1.05, 0.8, 1.3)), Identified(2, ()), facts())
+    assert not verdict.good
+    assert "the commands do not explain the poses. They explain 0 % of the motion" in verdict.sentence
+    assert "missed by 0.476 m after 5 s, by the model it is missed by 0.500 m" in verdict.sentence
+    assert verdict.advice[0].startswith("Check that commands and poses are of one robot and one drive")
+    half = give_verdict(judged(BETTER, BETTER, still=(0.52, 0.4, 0.7)), Identified(2, ()), facts())
+    assert not half.good
+    assert "They explain 48 % of the motion" in half.sentence
+    assert give_verdict(judged(BETTER, BETTER, still=(0.45, 0.2, 0.7)), Identified(2, ()), facts()).good
+
+
 def test_ellipsoids_that_are_not_true_are_said_and_a_good_verdict_is_not_plainly_good() -> None:
-    small = Consistency(nis=127.0, segments=30, band=(2.2, 3.9), inside=0.62)
+    small = ellipsoids(0.6, nis=127.0, factor=42.0)
     verdict = give_verdict(judged(BETTER, BETTER, small), Identified(2, ()), facts())
     assert verdict.good
     assert verdict.reservations == (small.sentence(),)
-    assert "NIS 127 (3 is true), and the 95 % ellipsoids hold 62 %" in verdict.sentence
+    assert "the 95 % ellipsoids hold 18 of 30 (60 %) held-out segments (mean NIS 127" in verdict.sentence
     assert verdict.advice[0].startswith("Multiply predicted covariances by 42 ")
     plain = give_verdict(judged(BETTER, BETTER, TRUE), Identified(2, ()), facts())
     assert (plain.good, plain.reservations, plain.advice) == (True, (), ())
 
 
 def test_a_model_that_is_mostly_outside_its_ellipsoids_is_not_good() -> None:
-    untrue = Consistency(nis=1184.0, segments=30, band=(2.2, 3.9), inside=0.3)
+    untrue = ellipsoids(0.3, nis=1184.0)
     verdict = give_verdict(judged(BETTER, BETTER, untrue), Identified(2, ()), facts())
     assert not verdict.good
     assert "what it says of its own errors is not true" in verdict.sentence
-    assert "NIS 1184 (3 is true)" in verdict.sentence
+    assert "hold 9 of 30 (30 %) held-out segments" in verdict.sentence
+
+
+def test_heavy_tails_are_said_and_covariances_that_hold_what_they_should_are_not_to_be_multiplied() -> None:
+    verdict = give_verdict(
+        judged(BETTER, BETTER, ellipsoids(94 / 99, nis=11.0, segments=99)), Identified(2, ()), facts()
+    )
+    assert verdict.good
+    assert (
+        "heavy tails: the 95 % ellipsoids hold 94 of 99 (95 %) held-out segments" in verdict.reservations[0]
+    )
+    assert "the farthest has a NIS of 44.0, and the mean is 11.0" in verdict.reservations[0]
+    assert "Multiply" not in " ".join(verdict.advice)
 
 
 def test_a_short_stop_qualifies_a_good_verdict() -> None:

@@ -184,6 +184,8 @@ def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
     )
     pages = " ".join(read("statistics.md").split())
     assert f"with a ratio up to {judgement.SAME:g} counting as the same" in pages
+    assert f"hold fewer than {100 * consistency.LEAST_INSIDE:.0f} % of the segments" in pages
+    assert f"or the 50 % ellipsoids more than {100 * consistency.MOST_INSIDE:.0f} %" in pages
     assert consistency.FAR == 3.0
     assert "beyond three times the end of its band" in pages
     assert f"fewer than {judgement.FEWEST_WINDOWS} held-out segments" in read("getting-started.md")
