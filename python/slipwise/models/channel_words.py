@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from math import hypot
 
 from slipwise.models.model import Model
-from slipwise.models.parameter_table import PhysicalParameter
+from slipwise.models.parameter_table import PhysicalParameter, known
+from slipwise.models.step_response import SOON, StepResponse, step_responses
 from slipwise.number_text import estimate_text
 
 Found = Mapping[str, PhysicalParameter]
@@ -15,67 +17,118 @@ Found = Mapping[str, PhysicalParameter]
 SAME = 2.0  # standard deviations of a difference; channels closer than that are said to be alike
 ALIKE = 0.1  # or closer than this fraction
 LARGEST_HIDDEN = 0.1  # std of the slow fraction up to which a slow mode may be left unsaid
+_CHANNELS = {"v": "speed", "omega": "yaw-rate"}
+
+
+@dataclass(frozen=True)
+class _Said:
+    """What is said of one channel: identified estimates alone, None where one is not."""
+
+    delay: tuple[float, float] | None  # s
+    at_once: bool  # the delay is known to be as good as none, and there is nothing else
+    lags: bool  # there is a lag behind the delay
+    lag: tuple[float, float] | None  # s
+    slower: str  # of a slow mode
+    risen: tuple[float, float] | None  # s until 63 % of a step are there, all together
+
+    @property
+    def words(self) -> str:
+        parts = []
+        if self.delay is not None:
+            least = " at least" if self.lags and self.lag is None and self.risen is None else ""
+            parts.append("at once" if self.at_once else f"after {_seconds(self.delay)}{least}")
+        if self.lag is not None:
+            parts.append(f"with a time constant of {_seconds(self.lag)}{self.slower}")
+        if self.risen is None:
+            return " and ".join(parts)
+        total = f"63 % of a step after {_seconds(self.risen)}"
+        return f"{' and '.join(parts)} ({total})" if parts else f"with {total}"
 
 
 def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> list[str]:
-    """Say delays and time constants, of speed and yaw rate together where these are alike."""
+    """Say how late speed and yaw rate are, together where these are alike, and how much of a step arrives."""
     if model.content.input != "command":
         return []
     found = {p.name: p for p in parameters}
     if not any(name.startswith(("time_constant_", "delay_")) for name in found):
         return ["Follows commands at once."]
-    channels = {"speed commands": _channel(found, "v"), "yaw-rate commands": _channel(found, "omega")}
-    if _alike(found, channels):
-        return [f"Follows commands {channels['speed commands']}."]
-    said = [f"{name} {words}" for name, words in channels.items() if words]
-    return [f"Follows {', and '.join(said)}."] if said else []
+    responses = dict(zip(_CHANNELS, step_responses(model), strict=True))
+    said = {place: _said(found, place, responses[place]) for place in _CHANNELS}
+    return [*_follows(said), *_arrives(found, responses)]
 
 
-def _channel(found: Found, place: str) -> str:
-    parts = []
+def _follows(said: Mapping[str, _Said]) -> list[str]:
+    if _alike(said["v"], said["omega"]):
+        return [f"Follows commands {said['v'].words}."]
+    parts = [f"{_CHANNELS[place]} commands {each.words}" for place, each in said.items() if each.words]
+    return [f"Follows {', and '.join(parts)}."] if parts else []
+
+
+def _arrives(found: Found, responses: Mapping[str, StepResponse]) -> list[str]:
+    """What has arrived of a step after a while, of channels that may go on with a slow mode after it."""
+    parts = [
+        f"{estimate_text(100.0 * soon[0], 100.0 * soon[1])} % of the {name} command"
+        for place, name in _CHANNELS.items()
+        if _may_be_slow(found, place) and known(*(soon := responses[place].soon))
+    ]
+    verb = "has" if len(parts) == 1 else "have"
+    return [f"{SOON:g} s after a step, {' and '.join(parts)} {verb} arrived."] if parts else []
+
+
+def _said(found: Found, place: str, response: StepResponse) -> _Said:
     delay, lagging = found.get(f"delay_{place}"), f"time_constant_{place}" in found
-    if delay is not None and delay.identified:
-        late = lagging or delay.value > SAME * delay.std
-        parts.append(f"after {_seconds(delay)}" if late else "at once")
-    constants = _time_constants(found, place)
-    if constants:
-        parts.append(f"with {constants}")
-    return " and ".join(parts)
-
-
-def _time_constants(found: Found, place: str) -> str:
-    """One time constant, or those of a fast and a slow mode; nothing where they are not identified."""
-    lag = found.get(f"time_constant_{place}")
-    if lag is None or not lag.identified:
-        return ""
-    slow, slow_time_constant = found.get(f"slow_fraction_{place}"), found.get(f"slow_time_constant_{place}")
-    one = f"a time constant of {_seconds(lag)}"
-    if slow is None or slow_time_constant is None:
-        return one
-    if abs(slow.value) <= SAME * slow.std:
-        return one if slow.std <= LARGEST_HIDDEN else ""
-    if not (slow.identified and slow_time_constant.identified):
-        return ""
-    percent = estimate_text(100.0 * slow.value, 100.0 * slow.std)
-    return f"{one} ({percent} % of it with a slower one of {_seconds(slow_time_constant)})"
-
-
-def _seconds(parameter: PhysicalParameter) -> str:
-    return f"{estimate_text(parameter.value, parameter.std)} s"
-
-
-def _alike(found: Found, channels: Mapping[str, str]) -> bool:
-    """Whether both channels say the same things with numbers that agree."""
-    if not all(channels.values()) or any("slower" in words for words in channels.values()):
-        return False
-    said = [tuple(word in words for word in ("after", "with")) for words in channels.values()]
-    return said[0] == said[1] and all(
-        _agree(found[f"{kind}_v"], found[f"{kind}_omega"])
-        for kind, is_said in zip(("delay", "time_constant"), said[0], strict=True)
-        if is_said
+    known_delay = None if delay is None or not delay.identified else (delay.value, delay.std)
+    lag, slower = _lag(found, place)
+    return _Said(
+        known_delay,
+        not lagging and known_delay is not None and known_delay[0] <= SAME * known_delay[1],
+        lagging,
+        lag,
+        slower,
+        response.risen if lagging and known(*response.risen) else None,
     )
 
 
-def _agree(first: PhysicalParameter, second: PhysicalParameter) -> bool:
-    difference = abs(first.value - second.value)
-    return difference <= max(SAME * hypot(first.std, second.std), ALIKE * min(first.value, second.value))
+def _lag(found: Found, place: str) -> tuple[tuple[float, float] | None, str]:
+    """One time constant, and words for a slow mode; none where they are not what the drive does."""
+    lag = found.get(f"time_constant_{place}")
+    if lag is None or not lag.identified:
+        return None, ""
+    one = (lag.value, lag.std)
+    slow, slow_time_constant = found.get(f"slow_fraction_{place}"), found.get(f"slow_time_constant_{place}")
+    if slow is None or slow_time_constant is None:
+        return one, ""
+    if abs(slow.value) <= SAME * slow.std:
+        return (None, "") if _may_be_slow(found, place) else (one, "")
+    physical = 0.0 < slow.value < 1.0 and slow_time_constant.value > lag.value
+    if not (physical and slow.identified and slow_time_constant.identified):
+        return None, ""
+    percent = estimate_text(100.0 * slow.value, 100.0 * slow.std)
+    slowly = _seconds((slow_time_constant.value, slow_time_constant.std))
+    return one, f", {percent} % of it with a slower one of {slowly}"
+
+
+def _may_be_slow(found: Found, place: str) -> bool:
+    """Whether there is a slow mode that is not known to be negligible."""
+    slow = found.get(f"slow_fraction_{place}")
+    return slow is not None and not (abs(slow.value) <= SAME * slow.std <= SAME * LARGEST_HIDDEN)
+
+
+def _seconds(estimate: tuple[float, float]) -> str:
+    return f"{estimate_text(*estimate)} s"
+
+
+def _alike(first: _Said, second: _Said) -> bool:
+    """Whether both channels say the same things with numbers that agree."""
+    if not (first.words and second.words) or first.slower or second.slower:
+        return False
+    pairs = ((first.delay, second.delay), (first.lag, second.lag), (first.risen, second.risen))
+    return all(
+        (one is None and other is None) or (one is not None and other is not None and _agree(one, other))
+        for one, other in pairs
+    )
+
+
+def _agree(first: tuple[float, float], second: tuple[float, float]) -> bool:
+    difference = abs(first[0] - second[0])
+    return difference <= max(SAME * hypot(first[1], second[1]), ALIKE * min(first[0], second[0]))

@@ -82,11 +82,8 @@ def _comparable(model: Model, first: Model, second: Model) -> tuple[PhysicalPara
 
 def _gains(model: Model) -> list[tuple[str, Gain]]:
     gains = slip_gains(model)
-    return [
-        ("speed gain", gains.speed),
-        ("yaw-rate gain", gains.yaw_rate),
-        ("separation multiplier", gains.separation),
-    ]
+    rows = [("speed gain", gains.speed), ("yaw-rate gain", gains.yaw_rate)]
+    return [*rows, ("separation multiplier", gains.separation)] if model.content.input == "wheel" else rows
 
 
 def _paired(first: tuple[str, Gain], second: tuple[str, Gain]) -> Difference:

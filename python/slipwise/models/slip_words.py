@@ -72,26 +72,31 @@ def slip_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> l
         return ["Slip is not part of this model."]
     slip, actuator = slip_gains(model), _actuator_gains(parameters)
     exact = all(abs(g.value - 1.0) <= AS_COMMANDED and g.std <= AS_COMMANDED for g in actuator.values())
-    if model.content.input == "wheel" or not exact:
-        return [_moves(slip, "its wheels say"), *_reaches(actuator)]
-    total = SlipGains(
-        slip.speed.times(actuator["speed"]), slip.yaw_rate.times(actuator["yaw rate"]), slip.separation
-    )
-    return [_moves(total, "is commanded")]
+    if model.content.input == "wheel":
+        return [_moves(slip.speed, slip.yaw_rate, "its wheels say", _separation(slip.separation))]
+    if not exact:
+        return [_moves(slip.speed, slip.yaw_rate, "its wheels say"), *_reaches(actuator)]
+    speed, yaw_rate = slip.speed.times(actuator["speed"]), slip.yaw_rate.times(actuator["yaw rate"])
+    return [_moves(speed, yaw_rate, "is commanded")]
 
 
-def _moves(gains: SlipGains, source: str) -> str:
+def _moves(speed: Gain, yaw_rate: Gain, source: str, besides: str = "") -> str:
     parts = []
-    if gains.speed.identified:
-        parts.append(f"drives {gains.speed.percent()}")
-    if gains.yaw_rate.identified:
-        parts.append(f"turns {gains.yaw_rate.percent()}")
+    if speed.identified:
+        parts.append(f"drives {speed.percent()}")
+    if yaw_rate.identified:
+        parts.append(f"turns {yaw_rate.percent()}")
     if not parts:
         return "The log does not identify how much the robot slips."
-    sentence = " and ".join(parts) + f" of what {source}"
-    if gains.separation.identified and gains.separation.value > 0.0:
-        sentence += f" (separation multiplier {estimate_text(gains.separation.value, gains.separation.std)})"
-    return sentence[0].upper() + sentence[1:] + "."
+    sentence = " and ".join(parts) + f" of what {source}{besides}."
+    return sentence[0].upper() + sentence[1:]
+
+
+def _separation(multiplier: Gain) -> str:
+    """The multiplier that wheel odometry takes; commands do not tell it from what the drive makes of them."""
+    if not (multiplier.identified and multiplier.value > 0.0):
+        return ""
+    return f" (separation multiplier {estimate_text(multiplier.value, multiplier.std)})"
 
 
 def _actuator_gains(parameters: tuple[PhysicalParameter, ...]) -> dict[str, Gain]:

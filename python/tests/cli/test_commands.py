@@ -65,7 +65,7 @@ def test_calibrate_says_what_was_learned_then_the_verdict_then_the_numbers(
 ) -> None:
     out = slipwise("calibrate", drive_csv, "-o", "model.yaml", "--basis", "edd-2", "--no-report").out
     said = (
-        "% of what is commanded (separation multiplier",
+        "% of what is commanded.",
         "times better than the kinematic baseline.",
         "GOOD. ",
         "slipwise evaluate OTHER_LOG --model model.yaml",

@@ -31,8 +31,8 @@ def follower(std: float = 0.01, **values: float) -> Model:
 
 def test_a_good_model_is_said_in_physical_units() -> None:
     text = str(summarise(judged(follower())))
-    assert "turns 60.0 ± 1.0 % of what is commanded (separation multiplier 1.67 ± 0.03)" in text
-    assert "Follows commands after 0.200 ± 0.002 s and with a time constant of 0.300 ± 0.003 s." in text
+    assert "turns 60.0 ± 1.0 % of what is commanded." in text
+    assert "after 0.200 ± 0.002 s and with a time constant of 0.300 ± 0.003 s (63 % of a step" in text
     assert "Predicts 5 s ahead to 0.0500 m and 0.0200 rad (1.15 deg), 11 and 20 times better" in text
     assert "log_" not in text
 
@@ -91,11 +91,36 @@ def test_a_gain_of_the_actuator_is_told_from_slip() -> None:
 
 def test_a_slow_mode_is_said_where_it_is_identified_and_hides_the_fast_one_where_it_is_not() -> None:
     clear = replace(named("edd-2"), response=True)
-    assert "(30.0 ± 1.0 % of it with a slower one of 1.500 ± 0.015 s)" in str(summarise(make_model(clear)))
+    text = str(summarise(make_model(clear)))
+    assert "0.300 ± 0.003 s, 30.0 ± 1.0 % of it with a slower one of 1.500 ± 0.015 s (63 % of a step" in text
     hazy = replace(named("edd-2", slow_fraction_v=0.7, slow_fraction_omega=0.7), response=True, std=0.29)
     hidden = str(summarise(make_model(hazy)))
-    assert "Follows commands after 0.20 ± 0.06 s." in hidden
+    assert "Follows commands after 0.20 ± 0.06 s at least." in hidden
     assert "time constant" not in hidden
+
+
+def test_a_slow_mode_is_said_where_it_is_one_and_the_whole_lateness_whatever_the_modes_are() -> None:
+    """A fraction below zero, or beside a lag as long, is no slower part of the answer."""
+    for fraction in (-0.86, 1.4):
+        values = {"slow_fraction_v": fraction, "slow_fraction_omega": fraction}
+        text = str(summarise(make_model(replace(named("edd-2", **values), response=True, std=0.02))))
+        assert "slower" not in text
+        assert "63 % of a step after " in text
+    values = {"slow_fraction_v": 0.3, "slow_fraction_omega": 0.3}
+    text = str(summarise(make_model(replace(named("edd-2", **values), response=True, std=0.12))))
+    assert "time constant" not in text
+    late = 0.2 + 0.3 + 0.2  # delay, the fast lag, and more by the slow mode
+    said = float(text.split("63 % of a step after ")[1].split(" ")[0])
+    assert said == pytest.approx(late, abs=0.1)
+    share = 100.0 * 0.9 * (0.7 * (1.0 - np.exp(-1.8 / 0.3)) + 0.3 * (1.0 - np.exp(-1.8 / 1.5)))
+    assert f"2 s after a step, {share:.0f} ± " in text
+
+
+def test_wheels_alone_tell_a_separation_multiplier() -> None:
+    slip = named("edd-2", ang__w=-0.4)
+    assert "(separation multiplier 1.67 ± 0.03)" in str(summarise(make_model(slip)))
+    for commanded in ({"commands": True}, {"response": True}, {"delays": (0.2, 0.2)}):
+        assert "multiplier" not in str(summarise(make_model(replace(slip, **commanded))))
 
 
 def test_limits_offsets_and_the_place_of_the_sensor_are_said() -> None:
