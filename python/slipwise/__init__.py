@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from slipwise.lazy_names import lazy_names
 
 if TYPE_CHECKING:
-    from slipwise.api import Calibration, calibrate, evaluate, predict
+    from slipwise.api import Calibration, calibrate, compare, evaluate, predict
     from slipwise.calibration import Settings, load_settings, make_settings
     from slipwise.calibration.motion_learner import MotionLearner
     from slipwise.errors import SlipwiseError
@@ -37,6 +37,7 @@ __all__ = [
     "SlipwiseError",
     "Summary",
     "calibrate",
+    "compare",
     "evaluate",
     "export_model",
     "load_model",
@@ -50,7 +51,7 @@ __all__ = [
 
 #: Where each public name lives.
 _HOMES = {
-    "slipwise.api": ("Calibration", "calibrate", "evaluate", "predict"),
+    "slipwise.api": ("Calibration", "calibrate", "compare", "evaluate", "predict"),
     "slipwise.calibration": ("Settings", "load_settings", "make_settings"),
     "slipwise.calibration.motion_learner": ("MotionLearner",),
     "slipwise.errors": ("SlipwiseError",),

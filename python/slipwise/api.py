@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from slipwise import _core, calibration, evaluation, prediction
 from slipwise.calibration import Settings
-from slipwise.evaluation import Evaluation, EvaluationOptions
+from slipwise.evaluation import Evaluation, EvaluationOptions, ModelComparison, compare_models
 from slipwise.ground import Ground, Pose
 from slipwise.logs import Inputs, Log, open_log
 from slipwise.models import Model, load_model
@@ -100,6 +100,22 @@ def evaluate(  # noqa: PLR0913 - all but the log are options
     return evaluation.evaluate(
         _opened(log), input=input, settings=settings, options=options, progress=progress
     )
+
+
+def compare(old: ModelOrPath, new: ModelOrPath, log: LogOrPath) -> ModelComparison:
+    """Say whether a new model predicts the robot of a log better than an old one, with 95 % intervals.
+
+    Args:
+        old: the model in force, or where its file is.
+        new: the one that may take its place.
+        log: what `open_log` returned, or what it takes: a path, or several. Best one of neither's logs.
+
+    Raises:
+        LogError: the log cannot be read, has no such input, no poses, or no window.
+        ModelError: a file is no model.
+        SettingsError: the models were learned from different inputs.
+    """
+    return compare_models(("old", _loaded(old)), ("new", _loaded(new)), _opened(log))
 
 
 def predict(  # noqa: PLR0913 - all but the first two are options

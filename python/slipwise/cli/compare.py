@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`slipwise compare`: what differs between two models, and which predicts a log better."""
+"""`slipwise compare`: whether a new model predicts a log better than an old one, and what differs."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from slipwise.cli.output import Output
     from slipwise.evaluation import Evaluation
+    from slipwise.evaluation.compare_models import ModelComparison
     from slipwise.evaluation.head_to_head import HeadToHead
     from slipwise.logs import LogOptions
     from slipwise.models import Model
@@ -26,8 +27,8 @@ _MOST_NAMED = 5  # numbers that a sentence names
 
 @takes_log_options
 def compare(
-    first: Annotated[Path, typer.Argument(metavar="A.yaml", show_default=False, help="A model file.")],
-    second: Annotated[Path, typer.Argument(metavar="B.yaml", show_default=False, help="Another one.")],
+    first: Annotated[Path, typer.Argument(metavar="OLD.yaml", show_default=False, help="A model file.")],
+    second: Annotated[Path, typer.Argument(metavar="NEW.yaml", show_default=False, help="Another one.")],
     log_options: LogOptions,
     logs: Annotated[
         list[Path] | None,
@@ -35,10 +36,11 @@ def compare(
     ] = None,
     json: Json = None,
 ) -> int:
-    """Say what differs between two models beyond their uncertainty, and which predicts a log better.
+    """Say whether a new model predicts a log better than an old one, and what differs between them.
 
-    Numbers differ where they lie three standard deviations of both together apart. Which model predicts
-    better is decided on the second half of the log's segments; give a log that neither has learned from.
+    Give a log that neither has learned from; several count as one. Both models predict all its segments as
+    they are, and one is better where the 95 % interval of its errors relative to the other's says so. Numbers
+    differ where they lie three standard deviations of both together apart.
 
     \b
     Examples:
@@ -56,32 +58,33 @@ def compare(
     models = named_models([first, second])
     slips = {name: without_force(model) for name, model in models.items()}  # a force is of its day
     rows = differences(*slips.values())
-    evaluation = _predicted(models, logs, log_options) if logs else None
-    out.document(_document(slips, rows, evaluation))
+    comparison = _compared(models, logs, log_options) if logs else None
+    out.document(_document(slips, rows, comparison))
+    if comparison is not None:
+        _show_comparison(out, comparison)
     _show_differences(out, slips, rows)
-    if evaluation is not None:
-        _show_predictions(out, evaluation)
     return 0
 
 
-def _predicted(models: dict[str, Model], logs: Sequence[Path], options: LogOptions) -> Evaluation:
+def _compared(models: dict[str, Model], logs: Sequence[Path], options: LogOptions) -> ModelComparison:
     from slipwise.cli.progress import progress_bar
-    from slipwise.evaluation import EvaluationOptions, evaluate
+    from slipwise.evaluation.compare_models import compare_models
     from slipwise.logs import open_log
 
     with progress_bar("reading") as update:
-        return evaluate(
+        old, new = models.items()
+        return compare_models(
+            old,
+            new,
             open_log(*logs, options=options),
-            options=EvaluationOptions(methods=("none", *models), model=models),
             progress=lambda name, fraction: update(f"method {name}", fraction),
         )
 
 
 def _document(
-    models: dict[str, Model], rows: Sequence[Difference], evaluation: Evaluation | None
+    models: dict[str, Model], rows: Sequence[Difference], comparison: ModelComparison | None
 ) -> dict[str, Any]:
     from slipwise.cli.document import evaluation_part, head
-    from slipwise.evaluation.head_to_head import head_to_head
     from slipwise.models.difference import same_logs, same_terms
 
     document = head("compare") | {
@@ -91,10 +94,15 @@ def _document(
         "same_terms": same_terms(*models.values()),
         "differences": [asdict(row) | {"z": row.z, "different": row.different} for row in rows],
     }
-    if evaluation is None:
+    if comparison is None:
         return document
-    match = head_to_head(evaluation, *models)
-    return document | {"predictions": asdict(match) | {"better": match.better}} | evaluation_part(evaluation)
+    of_all, *each = ({**asdict(m), "better": m.better} for m in (comparison.decisive, *comparison.matches))
+    said = {
+        "sentences": comparison.sentences(),
+        "learned_from_this": comparison.learned_from_this,
+        "horizons": each,
+    }
+    return document | {"predictions": of_all | said} | evaluation_part(comparison.evaluation)
 
 
 def _show_differences(out: Output, models: dict[str, Model], rows: Sequence[Difference]) -> None:
@@ -131,14 +139,28 @@ def different_sentence(different: Sequence[Difference]) -> str:
     return f"Different, in standard deviations of both together: {', '.join(named)}{rest}."
 
 
-def _show_predictions(out: Output, evaluation: Evaluation) -> None:
-    from slipwise.cli.tables import show_left_out, show_notes, show_scores
+def _show_comparison(out: Output, comparison: ModelComparison) -> None:
+    from slipwise.cli.output import Column
+    from slipwise.cli.tables import show_left_out, show_notes
 
-    show_notes(out, evaluation.notes)
-    show_left_out(out, evaluation.left_out)
-    show_scores(out, evaluation)
-    for sentence in comparison_sentences(evaluation):
+    for sentence in comparison.sentences():
         out.line(sentence)
+    names = (comparison.old, comparison.new)
+    heads = [Column("after", True, whole=True), Column("segments", True)]
+    for error in ("position [m]", "heading [rad]"):
+        heads += [*(Column(f"{error} {name}", True) for name in names), Column("new/old", True, whole=True)]
+    out.table("Mean errors", heads, [_match_row(match) for match in comparison.matches])
+    show_notes(out, comparison.evaluation.notes)
+    show_left_out(out, comparison.evaluation.left_out)
+
+
+def _match_row(match: HeadToHead) -> tuple[str, ...]:
+    from slipwise.number_text import number_text
+
+    cells = [f"{match.horizon:g} s", str(match.windows)]
+    for means, ratio in ((match.mean_position, match.position), (match.mean_heading, match.heading)):
+        cells += [*map(number_text, means), _ratio(ratio)]
+    return tuple(cells)
 
 
 def comparison_sentences(evaluation: Evaluation) -> list[str]:

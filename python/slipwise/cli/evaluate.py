@@ -77,9 +77,9 @@ def evaluate(
 ) -> int:
     """Compare methods on logs: each window is predicted from what was known before it.
 
-    The exit code is 1 where the learned method (the first model given, else `auto`, else the first that
-    learns) does not beat doing nothing at the longest horizon. Settings and result go into a new folder
-    below `runs`.
+    The exit code is 1 where what is judged (the first model given, whatever --methods says, else `auto`, else
+    the first that learns) does not beat doing nothing at the longest horizon. Settings and result go into a
+    new folder below `runs`.
 
     \b
     Examples:
@@ -174,7 +174,7 @@ def _next_step(evaluation: Evaluation, verdict: Verdict | None, models: Sequence
     """What to do with a model file that was judged on a log it had not learned from."""
     from slipwise.calibration.next_step import after_checking
 
-    if verdict is None or not models or evaluation.models[0] not in evaluation.methods:
+    if verdict is None or not models:
         return ()
     causal = evaluation.score(evaluation.models[0], max(evaluation.horizons)).causal
     return after_checking(verdict, models[0]) if causal else ()

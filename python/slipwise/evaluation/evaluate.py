@@ -32,7 +32,7 @@ class EvaluationOptions:
     """What to compare, and over which horizons."""
 
     horizons: tuple[float, ...] = DEFAULT_HORIZONS  # s
-    methods: tuple[str, ...] | None = None  # None: all that apply
+    methods: tuple[str, ...] | None = None  # None: all that apply; model files always are among them
     vendor_wheel_separation_multiplier: float | None = None
     model: Model | Mapping[str, Model] | None = None  # model files as they are: `model`, or several by name
     # What a calibration of this log with these settings predicted, by method: not learned a second time.
@@ -65,7 +65,7 @@ def evaluate(
     input_name, models = _input_name(log, input, options.models), options.models
     refuse_names_of_methods(models)
     contest, notes = contest_of(log, input_name, settings, options)
-    methods = options.methods or method_names(contest)
+    methods = tuple(dict.fromkeys((*(options.methods or method_names(contest)), *models)))
     for name in methods:
         method_info(name, models)
     predictions: list[Predictions] = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from slipwise.calibration.judgement import FEWEST_WINDOWS
 from slipwise.calibration.statistics import held_out_half, ratio_of_means
 from slipwise.evaluation.result import Evaluation
 
@@ -13,7 +14,7 @@ Ratio = tuple[float, float, float]  # value, and its 95 % interval
 
 @dataclass(frozen=True)
 class HeadToHead:
-    """The errors of one method relative to another's on the same held-out windows."""
+    """The errors of one method relative to another's on the same windows."""
 
     first: str
     second: str
@@ -21,11 +22,18 @@ class HeadToHead:
     windows: int
     position: Ratio  # mean error of the second over that of the first
     heading: Ratio
+    mean_position: tuple[float, float]  # m, of the first and of the second
+    mean_heading: tuple[float, float]  # rad
+
+    @property
+    def too_few(self) -> bool:
+        """Whether the windows are too few to tell."""
+        return self.windows < FEWEST_WINDOWS
 
     @property
     def better(self) -> str | None:
         """The one that is clearly better in position or heading and clearly worse in neither, or None."""
-        ratios = (self.position, self.heading)
+        ratios = () if self.too_few else (self.position, self.heading)
         second = any(high < 1.0 for _, _, high in ratios)
         first = any(low > 1.0 for _, low, _ in ratios)
         if first == second:
@@ -33,21 +41,24 @@ class HeadToHead:
         return self.second if second else self.first
 
 
-def head_to_head(evaluation: Evaluation, first: str, second: str) -> HeadToHead:
-    """Compare two methods at the longest horizon, on the windows that are scored.
+def head_to_head(
+    evaluation: Evaluation, first: str, second: str, *, horizon: float | None = None, every: bool = False
+) -> HeadToHead:
+    """Compare two methods at a horizon, by default the longest, on the windows that are scored.
+
+    `every` takes all windows: of methods that learned nothing from the log, the first half counts as well.
 
     Raises:
         KeyError: the evaluation does not have one of them.
     """
-    longest = max(evaluation.horizons)
-    found = {p.method: p for p in evaluation.predictions if p.horizon == longest}
+    seconds = max(evaluation.horizons) if horizon is None else horizon
+    found = {p.method: p for p in evaluation.predictions if p.horizon == seconds}
     one, other = found[first], found[second]
-    half = held_out_half(len(one))
+    half = slice(0, len(one)) if every else held_out_half(len(one))
 
-    def ratio(error: str) -> Ratio:
-        values = [getattr(p, error)[half] for p in (other, one)]
-        return ratio_of_means(values[0], values[1])
+    def means(error: str) -> tuple[Ratio, tuple[float, float]]:
+        mine, theirs = (getattr(p, error)[half] for p in (one, other))
+        return ratio_of_means(theirs, mine), (float(mine.mean()), float(theirs.mean()))
 
-    return HeadToHead(
-        first, second, longest, half.stop - half.start, ratio("position_error"), ratio("heading_error")
-    )
+    (position, positions), (heading, headings) = means("position_error"), means("heading_error")
+    return HeadToHead(first, second, seconds, half.stop - half.start, position, heading, positions, headings)

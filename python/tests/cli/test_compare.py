@@ -69,11 +69,32 @@ def test_a_log_decides_which_predicts_better(
 ) -> None:
     result = slipwise("compare", *models, drive_csv, "--json", "out.json")
     assert result.code == 0
-    assert "right.yaml predicts better: after 5 s wrong.yaml misses by" in result.out
+    said = "wrong.yaml predicts this robot worse than right.yaml: after 5 s its position error is "
+    assert result.out.lstrip().startswith(said)
     document = slipwise("compare", *models, drive_csv, "--json", "-").json
     assert document["predictions"]["better"] == "right.yaml"
     assert document["predictions"]["position"][1] > 1.0
+    assert [each["horizon"] for each in document["predictions"]["horizons"]] == [1.0, 2.0, 5.0]
+    assert document["predictions"]["sentences"][0] in result.out.replace("\n", " ")
+    swapped = slipwise("compare", *reversed(models), drive_csv)
+    assert swapped.out.lstrip().startswith("right.yaml predicts this robot better than wrong.yaml: after 5 s")
     assert [row["name"] for row in document["differences"] if row["different"]]
+
+
+def test_logs_are_pooled_and_a_model_of_one_of_them_is_said_to_be(
+    slipwise: Slipwise, folder: Path, drive_csv: Path, models: tuple[Path, Path]
+) -> None:
+    """Segments of two logs count together; one cannot be compared on what it learned without a word."""
+    again = folder / "again.csv"
+    again.write_bytes(drive_csv.read_bytes() + b"\n")
+    one = slipwise("compare", *models, drive_csv, "--json", "-").json["predictions"]
+    two = slipwise("compare", *models, drive_csv, again, "--json", "-").json["predictions"]
+    assert two["windows"] == 2 * one["windows"]
+    assert two["position"][0] == pytest.approx(one["position"][0])
+    assert two["learned_from_this"] == []
+    assert slipwise("calibrate", drive_csv, "-o", "new.yaml", "--input", "wheel", "--no-report").code == 0
+    own = slipwise("compare", models[1], "new.yaml", again, drive_csv)
+    assert "new.yaml was learned from this log, which favours it" in own.out
 
 
 def test_models_that_cannot_be_compared_are_one_line(

@@ -11,6 +11,7 @@ from contradictory_logs import sound_log, turned
 from slipwise.calibration import calibrate, make_settings
 from slipwise.cli.evaluation_verdict import judged_method, verdict_on
 from slipwise.evaluation import EvaluationOptions, evaluate
+from slipwise.models import Model
 
 
 @pytest.mark.parametrize(
@@ -40,6 +41,23 @@ def test_an_evaluation_and_a_calibration_say_the_same_of_the_same_log() -> None:
     assert verdict.sentence == calibration.verdict.sentence
     assert verdict.reservations == calibration.verdict.reservations
     assert set(calibration.verdict.advice) <= set(verdict.advice)
+
+
+def test_a_model_that_is_given_is_judged_whatever_else_is_asked_for() -> None:
+    model = calibrate(sound_log(), input="wheel", settings=make_settings({"basis": "edd-2"})).model
+    tripled = [p.model_copy(update={"value": 3.0 * p.value}) for p in model.content.parameters]
+    worse = Model(model.content.model_copy(update={"parameters": tripled}))
+    other = replace(sound_log(), sources=())
+    said = []
+    for methods in (("none", "edd-2"), ("none", "model"), None):
+        options = EvaluationOptions(methods=methods, model=worse)
+        evaluation = evaluate(other, input="wheel", options=options)
+        verdict = verdict_on(evaluation, worse)
+        assert verdict is not None
+        said.append((verdict.good, verdict.sentence))
+        error = f"{evaluation.score('model', 5.0).position.mean:.3g} m"
+        assert f"The learned model's mean error after 5 s is {error}" in verdict.sentence
+    assert said[0] == said[1] == said[2]
 
 
 def test_an_evaluation_on_a_log_that_contradicts_itself_is_not_good_though_the_model_is() -> None:

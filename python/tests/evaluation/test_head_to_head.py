@@ -35,9 +35,10 @@ def test_several_models_are_methods_under_their_names() -> None:
 
 
 def test_nothing_is_better_that_is_worse_in_the_other_error() -> None:
-    both = HeadToHead("a", "b", 5.0, 10, (0.5, 0.4, 0.6), (1.5, 1.2, 1.8))
+    both = HeadToHead("a", "b", 5.0, 10, (0.5, 0.4, 0.6), (1.5, 1.2, 1.8), (0.2, 0.1), (0.02, 0.03))
     assert both.better is None
     assert replace(both, heading=(1.1, 0.9, 1.3)).better == "b"
+    assert replace(both, heading=(1.1, 0.9, 1.3), windows=3).better is None
     assert replace(both, position=(1.0, 0.9, 1.1)).better == "a"
 
 
