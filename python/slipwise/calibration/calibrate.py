@@ -32,6 +32,7 @@ from slipwise.calibration.shortage import shortage_advice, silence
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import LogFacts
+from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.contradictions import contradictions
@@ -259,8 +260,13 @@ def _range(drive: tuple[PreparedRun, ...]) -> schema.Range:
     yaw_rate = np.concatenate([run.inputs.omega for run in drive])
     tilts = [t for run in drive for t in (run.run.poses.roll, run.run.poses.pitch) if t is not None]
     steepest = float(np.nanmax(np.abs(np.concatenate(tilts)))) if tilts else 0.0
+    wheels = WheelStep()
+    for run in drive:
+        if run.run.wheels is not None:
+            wheels.take_run(run.run.wheels.t)
     return schema.Range(
         speed=[float(speed.min()), float(speed.max())],
         yaw_rate=[float(yaw_rate.min()), float(yaw_rate.max())],
         slope=steepest if np.isfinite(steepest) else 0.0,
+        wheel_step=wheels.seconds,
     )

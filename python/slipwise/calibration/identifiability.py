@@ -101,7 +101,8 @@ def timing_words(
             sentences.append(f"Wheel speeds in the log would tell them apart{how}.")
     if motion.clock_offset:
         sentences.append(
-            "clock_offset is how much later poses are stamped than the wheel speeds of the same moment."
+            "clock_offset is how much later poses are stamped than the wheel speeds of the same moment; a "
+            "negative one within the time between wheel speeds is how these are sampled, and no offset."
         )
         if "clock_offset" in unknown:
             sentences.append("This drive does not determine it: it stays about where it was before any data.")

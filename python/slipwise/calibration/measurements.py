@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from slipwise import _core
+from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import SettingsError
 from slipwise.logs.fixes import fix_number
 
@@ -14,6 +15,7 @@ class Measurements:
     _core: _core.MotionLearner
     _positions: bool
     _wheels: bool
+    _wheel_step: WheelStep
     _sources: dict[str, int]  # of poses, by name
 
     @property
@@ -40,6 +42,7 @@ class Measurements:
     def push_wheels(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
         """Take the twist that the wheels measure: its stamp [s], speeds [m/s] and yaw rate [rad/s]."""
         self._wheels = True
+        self._wheel_step.take(t)
         self._core.push_wheels(t, v, omega, vy)
 
     def push_pose(  # noqa: PLR0913 (a measurement has as many numbers)

@@ -29,6 +29,7 @@ from slipwise.calibration.sloping_ground import with_gravity
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts
+from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Log
 from slipwise.models import Model, parse_model
@@ -97,6 +98,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
         self._positions = positions
         self._runs: list[str] = []
         self._wheels = False
+        self._wheel_step = WheelStep()
         self._remember = remember
         self._start: Model | None = None  # that it began with
 
@@ -243,7 +245,12 @@ class MotionLearner(Measurements, RememberedSurfaces):
             input_name=self._input,
             settings=self._settings,
             logs=[],
-            range=Range(speed=[slowest, fastest], yaw_rate=[right, left], slope=model.steepest),
+            range=Range(
+                speed=[slowest, fastest],
+                yaw_rate=[right, left],
+                slope=model.steepest,
+                wheel_step=self._wheel_step.seconds,
+            ),
             seconds=model.seconds,
             segments=model.segments,
         )
@@ -284,6 +291,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             "settings": self._settings.model_dump(mode="json"),
             "runs": self._runs,
             "wheels": self._wheels,
+            "wheel_step": [self._wheel_step.total, self._wheel_step.count, self._wheel_step.last],
             "positions": self._positions,
             "sources": list(self._sources),
             "gyro_alone": self._gyro_alone,
@@ -317,6 +325,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             )
             if facts.get("start"):
                 learner._start = parse_model(facts["start"], where="saved model")
+            learner._wheel_step = WheelStep(*facts.get("wheel_step", ()))
             learner._runs, learner._wheels = [str(run) for run in facts["runs"]], bool(facts["wheels"])
         except (ValueError, TypeError, KeyError) as problem:
             raise SettingsError(f"the saved learner cannot be loaded: {problem}") from problem
@@ -331,6 +340,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
         if self._runs and not np.isfinite(self._core.newest):
             self._runs.pop()
         self._runs.append(name)
+        self._wheel_step.restart()
 
     def _run(self, index: int) -> str:
         return self._runs[index] if index < len(self._runs) else ""

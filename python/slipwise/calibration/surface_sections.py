@@ -119,6 +119,7 @@ def _wider(a: Range, b: Range) -> Range:
         speed=[min(a.speed[0], b.speed[0]), max(a.speed[1], b.speed[1])],
         yaw_rate=[min(a.yaw_rate[0], b.yaw_rate[0]), max(a.yaw_rate[1], b.yaw_rate[1])],
         slope=max(a.slope, b.slope),
+        wheel_step=max(a.wheel_step, b.wheel_step),
         body=a.body and b.body and _wider_body(a.body, b.body),
     )
 

@@ -22,7 +22,7 @@ class Timing:
 
 
 _MEANINGS = {
-    "clock_offset": "poses are stamped this much later than wheel speeds",
+    "clock_offset": "poses are stamped this much later than wheel speeds (held from their stamps on)",
     "delay_v": "from a speed command to that speed, which then is there at once",
     "delay_omega": "from a yaw rate command to that yaw rate, which then is there at once",
     "log_delay_v": "from a speed command to the first effect",

@@ -47,7 +47,7 @@ def summarise(model: Model) -> Summary:
         *slip_sentences(model, parameters),
         *response_sentences(model, parameters),
         *_limit_sentences(parameters),
-        *_offset_sentences(parameters),
+        *_offset_sentences(parameters, model.content.range.wheel_step),
         *sensor_sentences(model),
         *_prediction_sentences(model),
     ]
@@ -64,11 +64,11 @@ def _limit_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:
     return [f"Actuator limits of {'; '.join(parts)}."] if parts else []
 
 
-def _offset_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:
+def _offset_sentences(parameters: tuple[PhysicalParameter, ...], wheel_step: float) -> list[str]:
     found = {p.name: p for p in parameters if p.identified and abs(p.value) > SIGNIFICANT * p.std}
     sentences = []
     clock = found.get("clock_offset")
-    if clock is not None:
+    if clock is not None and not _explained(clock, wheel_step):
         order = "later" if clock.value > 0.0 else "earlier"
         seconds = estimate_text(abs(clock.value), clock.std)
         sentences.append(f"Poses are stamped {seconds} s {order} than wheel speeds of the same time.")
@@ -84,6 +84,11 @@ def _offset_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:
         degrees = estimate_text(math.degrees(yaw.value), math.degrees(yaw.std))
         sentences.append(f"The pose sensor is turned by {degrees} deg.")
     return sentences
+
+
+def _explained(clock: PhysicalParameter, wheel_step: float) -> bool:
+    """Say whether an offset is how wheel speeds are held: half a step of samples, a whole one of means."""
+    return -wheel_step - SIGNIFICANT * clock.std <= clock.value <= 0.0
 
 
 def _prediction_sentences(model: Model) -> list[str]:
