@@ -46,6 +46,11 @@ def estimate_text(value: float, std: float) -> str:
     return " ± ".join(estimate_texts(value, std))
 
 
+def count_text(count: int, noun: str) -> str:
+    """Return how many there are of something, such as `1 segment` and `2 segments`."""
+    return f"{count} {noun}" + ("" if count == 1 else "s")
+
+
 def _decimals(value: float, digits: int) -> int:
     return digits - 1 - math.floor(math.log10(abs(value)))
 

@@ -19,7 +19,7 @@ from slipwise.calibration.learner import Posterior
 from slipwise.calibration.result import Verdict
 from slipwise.logs.contradiction import Contradiction
 from slipwise.models.schema import HeldOut
-from slipwise.number_text import number_text
+from slipwise.number_text import count_text, number_text
 
 _REFUSED = "Do not use this model:"
 _FOLLOWED = {"command": "commands", "wheel": "wheels"}
@@ -127,7 +127,7 @@ def _not_judged(judgement: Judgement) -> str:
     if not judgement.too_short:
         return ""
     return (
-        f"Too little driving to judge: {judgement.held_out.segments} held-out segments of "
+        f"Too little driving to judge: {count_text(judgement.held_out.segments, 'held-out segment')} of "
         f"{judgement.held_out.horizon:g} s, at least {FEWEST_WINDOWS} are needed."
     )
 

@@ -23,6 +23,7 @@ from slipwise.cli.options import (
     optional,
     takes_log_options,
 )
+from slipwise.number_text import count_text
 
 if TYPE_CHECKING:
     from slipwise.calibration import Calibration
@@ -206,7 +207,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     learned, summary = content.provenance, summarise(calibration.model)
     out.line(
         f"Learned {content.slip.basis} from {content.input}s: "
-        f"{learned.learned_segments} segments, {learned.learned_seconds:.0f} s of driving."
+        f"{count_text(learned.learned_segments, 'segment')}, {learned.learned_seconds:.0f} s of driving."
     )
     show_summary(out, summary)
     show_verdict(out, calibration.verdict, after_learning(calibration.verdict, files["model"]))

@@ -18,7 +18,7 @@ from slipwise.cli.options import (
     optional,
     takes_log_options,
 )
-from slipwise.number_text import number_text
+from slipwise.number_text import count_text, number_text
 
 if TYPE_CHECKING:
     from slipwise.calibration import Settings
@@ -261,7 +261,7 @@ def _show_learnability(out: Output, item: Learnability, *, advise: bool) -> None
         return
     known = [physical_name(p.name) for p in item.parameters if p.identifiable]
     unknown = [physical_name(p.name) for p in item.parameters if not p.identifiable]
-    out.line(f"From {item.input}s: {item.windows} segments, {item.seconds:.0f} s of driving")
+    out.line(f"From {item.input}s: {count_text(item.windows, 'segment')}, {item.seconds:.0f} s of driving")
     out.line(f"  identifiable: {', '.join(known) or 'nothing'}")
     if unknown:
         out.line(f"  not identifiable: {', '.join(unknown)}")

@@ -14,6 +14,7 @@ from slipwise.live.learning import Learning
 from slipwise.live.outputs import Odometry, ParameterNow, Path, Status, SurfaceNow
 from slipwise.live.said import Said
 from slipwise.models.parameter_table import physical_name
+from slipwise.number_text import count_text
 
 KEPT_POSES = 600  # measured poses that are shown
 APART = 0.02  # m between two of them
@@ -114,7 +115,7 @@ def _state(learning: Learning, intake: Intake, now: Now) -> tuple[str, str]:
         return "not learning", intake.why_not
     if learning.segments == 0:
         return "waiting", "no stretch of driving is complete yet"
-    return "learning", f"{learning.segments} segments so far"
+    return "learning", f"{count_text(learning.segments, 'segment')} so far"
 
 
 def parameters_now(learning: Learning, applied: AppliedModel | None) -> tuple[ParameterNow, ...]:
