@@ -69,8 +69,8 @@ class RosTransport:
         self._name, self._override, self._terrain = name, cues.override, cues.terrain
         self._messages, self._listeners = RosMessages(name), Listeners(wire.connections)
         self._reading = ros_types()
-        self._stamps = Stamps()
         self._notices: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._stamps = Stamps("" if roles.pose is None else roles.pose.name, self._notices.put)
         self._faulty: set[str] = set()
         self._calls: queue.SimpleQueue[AppliedParameters | None] = queue.SimpleQueue()
         self._caller = threading.Thread(target=self._call_nodes, name="parameters", daemon=True)
@@ -198,7 +198,7 @@ class RosTransport:
         def take(payload: bytes) -> None:
             try:
                 message = read(payload)
-                samples = convert(message, self._stamps.of(message, time.time()))
+                samples = convert(message, self._stamps.of(message, time.time(), topic))
             except Exception as problem:
                 if topic not in self._faulty:
                     self._faulty.add(topic)

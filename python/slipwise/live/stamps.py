@@ -4,28 +4,44 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from slipwise.logs.clock_steps import BACK, ENOUGH
+from slipwise.logs.header_clock import apart_words, clock_between, is_apart, shift_words
+
 LOOKED_AT = 200  # messages with a header, of late
-APART = 10.0  # s between header and arrival, from which on the headers run on a clock of their own
+_FEWEST = 20  # of a topic, before its clock is taken for another than that of the poses
+
+
+def _nobody(_: str) -> None:
+    """Nobody listens."""
 
 
 class Stamps:
-    """Dates messages [s]."""
+    """Dates messages [s], as those of a bag are dated.
 
-    def __init__(self) -> None:
+    Args:
+        first: the topic whose clock all is dated on; another where it has no headers.
+        say: is told of clocks that are apart.
+    """
+
+    def __init__(self, first: str = "", say: Callable[[str], None] = _nobody) -> None:
         self.simulated = False  # whether /clock gives the time
         self._now = float("nan")  # s, of /clock
-        self._ahead: deque[float] = deque(maxlen=LOOKED_AT)  # s, header minus arrival
+        self._first, self._say = first, say
+        self._clocks: dict[str, _Lead] = {}  # of each topic with headers
+        self._shifts: dict[str, float] = {}  # s added to the stamps of a topic
+        self._said = False
 
     def take_clock(self, clock: Any) -> None:
         """Take the time that /clock has."""
         self._now = clock.sec + clock.nanosec / 1e9
 
-    def of(self, message: Any, arrived: float) -> float:
-        """Return the stamp of a message that arrived at a time [s since 1970].
+    def of(self, message: Any, arrived: float, topic: str = "") -> float:
+        """Return the stamp of a message of a topic that arrived at a time [s since 1970].
 
         Without a header it is the time of /clock; else that of arrival, on the clock of the headers where
         these differ: the least delayed of them says by how much.
@@ -33,9 +49,56 @@ class Stamps:
         header = getattr(message, "header", None)
         if header is not None and (header.stamp.sec or header.stamp.nanosec):
             t = float(header.stamp.sec + header.stamp.nanosec / 1e9)
-            self._ahead.append(t - arrived)
-            return t
+            self._clocks.setdefault(topic, _Lead()).take(t - arrived)
+            return t + self._shift(topic)
         if self.simulated:
             return self._now
-        offset = max(self._ahead) if self._ahead else 0.0
-        return arrived + (offset if abs(float(np.median(self._ahead or [0.0]))) > APART else 0.0)
+        main = self._main()
+        if main is None or not is_apart(main.lead):
+            return arrived
+        if not self._said and len(main) >= _FEWEST:
+            self._said = True
+            dated = "what has no header is dated on their clock"
+            self._say(f"{apart_words(main.lead, 'this computer')}: {dated}")
+        return arrived + main.lead
+
+    def _main(self) -> _Lead | None:
+        return self._clocks.get(self._first) or next(iter(self._clocks.values()), None)
+
+    def _shift(self, topic: str) -> float:
+        """Return what is added to the stamps of a topic that is on another clock than the poses [s]."""
+        own, main = self._clocks[topic], self._main()
+        if self.simulated or main is None or main is own or min(len(own), len(main)) < _FEWEST:
+            return self._shifts.get(topic, 0.0)
+        found, before = clock_between(main.lead, own.lead), self._shifts.get(topic, 0.0)
+        if abs(found - before) > BACK or bool(found) != bool(before):
+            self._shifts[topic] = found
+            if found:
+                self._say(
+                    f"the clock of {topic} is not that of the poses: {found:+.2f} s are added to its stamps"
+                )
+        return self._shifts.get(topic, 0.0)
+
+
+class _Lead:
+    """How far the headers of a topic are ahead of their arrival, by the least delayed of late."""
+
+    def __init__(self) -> None:
+        self._leads: deque[float] = deque(maxlen=LOOKED_AT)
+        self._odd: list[float] = []  # that do not go with these: several in a row are a clock that was set
+        self.lead = 0.0  # s
+
+    def __len__(self) -> int:
+        return len(self._leads)
+
+    def take(self, lead: float) -> None:
+        if self._leads and abs(lead - float(np.median(self._leads))) > BACK:
+            self._odd.append(lead)
+            if len(self._odd) < ENOUGH:
+                return
+            self._leads.clear()
+            self._leads.extend(self._odd)
+        else:
+            self._leads.append(lead)
+        self._odd = []
+        self.lead = max(self._leads)

@@ -65,6 +65,17 @@ def is_apart(lead: float) -> bool:
     return lead > AHEAD or lead < -LATENCY
 
 
+def apart_words(lead: float, whose: str) -> str:
+    """Say how far headers are ahead of the clock of whoever receives them [s]."""
+    side = "ahead of" if lead > 0.0 else "behind"
+    return f"header stamps are on another clock, {abs(lead):.2f} s {side} {whose}'s"
+
+
+def shift_words(topic: str, seconds: float) -> str:
+    """Say that the stamps of a topic are shifted to the clock of the poses."""
+    return f"the clock of {topic} is not that of the poses: {seconds:+.2f} s are added to its stamps"
+
+
 def compare_clocks(received: Floats, stamps: Floats) -> HeaderClock | None:
     """Return the clock of stamps [N] against times of receipt [N], both in s; None where they follow none."""
     if len(stamps) == 0:
@@ -126,15 +137,11 @@ class BagClocks:
         if main is not None and main.simulated:
             said = [f"header stamps run at {main.rate:.3g} of the bag's clock{dated}"]
         elif main is not None and main.apart:
-            side = "ahead of" if main.offset > 0.0 else "behind"
-            said = [f"header stamps are on another clock, {abs(main.offset):.2f} s {side} the bag's{dated}"]
+            said = [f"{apart_words(main.offset, 'the bag')}{dated}"]
         else:
             how = "has no header: its commands are dated by the time of receipt"
             said = [f"{name} {how}" for name in unstamped]
-        said += [
-            f"the clock of {topic} is not that of the poses: {seconds:+.2f} s are added to its stamps"
-            for topic, seconds in self.shifts.items()
-        ]
+        said += [shift_words(topic, seconds) for topic, seconds in self.shifts.items()]
         said += [
             f"the stamps of {topic} do not go with the bag's clock: it is dated by the time of receipt"
             for topic in sorted(self.received)
@@ -174,9 +181,12 @@ def clocks_of(
 
 def _between(main: HeaderClock, other: HeaderClock) -> float:
     """By how much the main clock is ahead of another [s]; what delays of their streams explain is none."""
-    if main.simulated:
-        return 0.0
-    first, second = (each.offset if each.apart else 0.0 for each in (main, other))
-    one_is_the_bags = min(abs(main.offset), abs(other.offset)) <= _PROMPT
+    return 0.0 if main.simulated else clock_between(main.offset, other.offset)
+
+
+def clock_between(main: float, other: float) -> float:
+    """By how much a clock is ahead of another [s], by their leads over receipt; what delays explain is 0."""
+    first, second = (lead if is_apart(lead) else 0.0 for lead in (main, other))
+    one_is_the_bags = min(abs(main), abs(other)) <= _PROMPT
     least = AHEAD + _PROMPT if one_is_the_bags and max(first, second) > AHEAD else _SHARED
     return first - second if abs(first - second) > least else 0.0

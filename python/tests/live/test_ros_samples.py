@@ -130,6 +130,37 @@ def test_stamps_are_those_of_headers_and_others_are_dated_by_their_clock() -> No
     for k in range(50):  # headers of a clock that is 700 s behind, delivered 10 to 59 ms late
         assert stamps.of(Made(header=header(300.0 + k)), 1000.01 + k + 0.001 * k) == 300.0 + k
     assert stamps.of(no_header, 1100.0) == pytest.approx(399.99)
+    assert stamps.of(no_header, 1100.0, "/cmd_vel") == pytest.approx(399.99)
     stamps.simulated = True
     stamps.take_clock(Made(sec=12, nanosec=500_000_000))
     assert stamps.of(no_header, 1100.0) == 12.5
+
+
+def heard(stamps: Stamps, topic: str, ahead: float, begin: float = 1000.0) -> list[float]:
+    """Take 50 messages of a topic whose clock is ahead, 10 to 59 ms late; return how they are dated."""
+    times = [begin + 0.1 * k for k in range(50)]
+    made = [Made(header=Made(stamp=Made(sec=0, nanosec=round(1e9 * (t + ahead))))) for t in times]
+    return [
+        stamps.of(message, t + 0.01 + 0.001 * k, topic) - t
+        for k, (message, t) in enumerate(zip(made, times, strict=True))
+    ]
+
+
+@pytest.mark.parametrize("ahead", [1.7, -1.7, 0.3])
+def test_a_small_offset_of_clocks_is_seen_live_as_in_a_bag(ahead: float) -> None:
+    said: list[str] = []
+    stamps, no_header = Stamps("/pose", said.append), twist(1.0, 0.0, 0.0)
+    heard(stamps, "/pose", ahead)
+    assert stamps.of(no_header, 1010.0, "/cmd_vel") == pytest.approx(1010.0 + ahead, abs=0.02)
+    side = "ahead of" if ahead > 0.0 else "behind"
+    assert len(said) == 1
+    assert said[0].endswith(f"{side} this computer's: what has no header is dated on their clock")
+    assert heard(stamps, "/odom", 0.0)[-1] == pytest.approx(ahead, abs=0.02)
+    assert said[1].startswith("the clock of /odom is not that of the poses")
+
+
+def test_a_clock_that_is_set_dates_what_has_no_header_anew() -> None:
+    stamps, no_header = Stamps("/pose"), twist(1.0, 0.0, 0.0)
+    heard(stamps, "/pose", 0.0)
+    heard(stamps, "/pose", -10.0, 1005.0)
+    assert stamps.of(no_header, 1010.0, "/cmd_vel") == pytest.approx(1000.0, abs=0.02)
