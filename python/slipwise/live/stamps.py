@@ -74,9 +74,7 @@ class Stamps:
         if abs(found - before) > BACK or bool(found) != bool(before):
             self._shifts[topic] = found
             if found:
-                self._say(
-                    f"the clock of {topic} is not that of the poses: {found:+.2f} s are added to its stamps"
-                )
+                self._say(shift_words(topic, found))
         return self._shifts.get(topic, 0.0)
 
 

@@ -154,10 +154,13 @@ def weigh_topics(
     found = _with_foreign(TopicRoles(pose, command, wheel, imu, None, (), advice), every, foreign)
     problem = _problem(every, found, options, shared=shared)
     notes = _notes(found, options, transforms)
-    said = tuple(f"{name} is not used: {why}" for name, why in foreign.items())
+    said = []
     for name, why in foreign.items():
-        if wheel.topic is None and every[name].type in _WHEEL.kinds:
-            advice.setdefault("wheel", f"{name} is not used, since {why}: else give --wheel-topic {name}")
+        words = f"{name} is not used, since {why}"
+        if wheel.topic is None and every[name].type in _WHEEL.kinds and "wheel" not in advice:
+            advice["wheel"] = f"{words}: else give --wheel-topic {name}"
+        else:
+            said.append(words)
     return replace(found, problem=problem, guessed=(*notes, *said))
 
 

@@ -40,7 +40,7 @@ def test_the_wheels_of_another_robot_are_not_taken() -> None:
     path = field_path("two_robots_mixed.mcap")
     log = open_log(path)
     assert log.runs[0].wheels is None
-    assert "/r2/odom is not used: it is of r2, not of r1" in log.notes
+    assert "/r2/odom is not used, since it is of r2, not of r1: else give --wheel-topic /r2/odom" in log.notes
     with pytest.raises(LogError, match=r"it is of r2, not of r1: else give --wheel-topic /r2/odom"):
         learned(path, "wheel")
 
