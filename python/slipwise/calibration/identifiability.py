@@ -101,8 +101,8 @@ def timing_words(
             sentences.append(f"Wheel speeds in the log would tell them apart{how}.")
     if motion.clock_offset:
         sentences.append(
-            "clock_offset is how much later poses are stamped than the wheel speeds of the same moment; a "
-            "negative one within the time between wheel speeds is how these are sampled, and no offset."
+            "clock_offset is how much later poses are stamped than the wheel speeds of the same moment. A "
+            "negative value within the time between two wheel speeds comes from their sampling, not from clocks."
         )
         if "clock_offset" in unknown:
             sentences.append("This drive does not determine it: it stays about where it was before any data.")

@@ -141,9 +141,9 @@ def _unexplained(judgement: Judgement, facts: LogFacts) -> str:
     motion = number_text(error / judgement.still_ratio[0])
     share, least = 100.0 * max(judgement.explained, 0.0), 100.0 * LEAST_EXPLAINED
     return (
-        f"{_REFUSED} the {inputs} do not explain the poses. They explain {share:.0f} % of the motion, where "
-        f"{least:.0f} % is the least: a robot said to stand still is missed by {motion} {unit} after "
-        f"{held_out.horizon:g} s, by the model it is missed by {number_text(error)} {unit}."
+        f"{_REFUSED} the {inputs} do not explain the poses. They explain {share:.0f} % of the motion, a "
+        f"good model {least:.0f} % and more: saying that the robot stands still misses by {motion} {unit} after "
+        f"{held_out.horizon:g} s, the model by {number_text(error)} {unit}."
     )
 
 
