@@ -102,7 +102,7 @@ def timing_words(
     if motion.clock_offset:
         sentences.append(
             "clock_offset is how much later poses are stamped than the wheel speeds of the same moment. A "
-            "negative value within the time between two wheel speeds comes from their sampling, not from clocks."
+            "negative value within the time between two wheel speeds comes from their sampling, not a clock."
         )
         if "clock_offset" in unknown:
             sentences.append("This drive does not determine it: it stays about where it was before any data.")

@@ -142,8 +142,8 @@ def _unexplained(judgement: Judgement, facts: LogFacts) -> str:
     share, least = 100.0 * max(judgement.explained, 0.0), 100.0 * LEAST_EXPLAINED
     return (
         f"{_REFUSED} the {inputs} do not explain the poses. They explain {share:.0f} % of the motion, a "
-        f"good model {least:.0f} % and more: saying that the robot stands still misses by {motion} {unit} after "
-        f"{held_out.horizon:g} s, the model by {number_text(error)} {unit}."
+        f"good model {least:.0f} % and more: saying that the robot stands still misses by {motion} {unit} "
+        f"after {held_out.horizon:g} s, the model by {number_text(error)} {unit}."
     )
 
 

@@ -174,7 +174,7 @@ def test_inputs_that_do_not_explain_the_motion_give_no_good_model_though_it_beat
     verdict = give_verdict(judged(BETTER, BETTER, still=(1.05, 0.8, 1.3)), Identified(2, ()), facts())
     assert not verdict.good
     assert "the commands do not explain the poses. They explain 0 % of the motion" in verdict.sentence
-    assert "missed by 0.476 m after 5 s, by the model it is missed by 0.500 m" in verdict.sentence
+    assert "stands still misses by 0.476 m after 5 s, the model by 0.500 m" in verdict.sentence
     assert verdict.advice[0].startswith("Check that commands and poses are of one robot and one drive")
     half = give_verdict(judged(BETTER, BETTER, still=(0.52, 0.4, 0.7)), Identified(2, ()), facts())
     assert not half.good
