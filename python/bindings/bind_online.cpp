@@ -269,6 +269,8 @@ void bind_online(nb::module_& m) {
           [](const MotionLearner& learner) { return learned_sources(learner.sources(), learner.noise_scale()); },
           "What is known of each source of poses, where there are several.")
       .def("push_attitude", &MotionLearner::push_attitude, "t"_a, "roll"_a, "pitch"_a)
+      .def_prop_ro("attitude_mounting", &MotionLearner::attitude_mounting,
+                   "How the sensor of roll and pitch sits on the robot.")
       .def(
           "push", [](MotionLearner& learner, const Recording& run) { push(learner, run); }, "run"_a,
           nb::call_guard<nb::gil_scoped_release>(), "Pushes recorded streams in the order of their stamps.")

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of recorded runs: handed to a learner whole, cut into segments, and as the gates see them.
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
@@ -15,6 +17,7 @@
 #include "bindings.hpp"
 #include "pose_sources.hpp"
 #include "sample_rows.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/recording.hpp"
 
 namespace nb = nanobind;
@@ -69,9 +72,33 @@ Rows pose_rows(const std::vector<MeasuredPose>& poses) {
   return rows;
 }
 
+void bind_attitudes(nb::module_& m) {
+  nb::enum_<AttitudeMounting::Kind>(m, "MountingKind", "How a sensor sits on its robot.")
+      .value("Level", AttitudeMounting::Kind::Level)
+      .value("Rolled", AttitudeMounting::Kind::Rolled, "By quarters of a turn about its forward axis, which is undone.")
+      .value("Other", AttitudeMounting::Kind::Other, "What it says of tilt is not used.");
+  nb::class_<AttitudeMounting>(m, "AttitudeMounting", "How the sensor of roll and pitch sits on the robot.")
+      .def_ro("kind", &AttitudeMounting::kind)
+      .def_ro("roll", &AttitudeMounting::roll, "On level ground [rad].")
+      .def_ro("pitch", &AttitudeMounting::pitch, "On level ground [rad].");
+  nb::class_<AttitudeGate>(m, "AttitudeGate", "What attitudes of a sensor say of the robot.")
+      .def(nb::init<>())
+      .def(
+          "level",
+          [](AttitudeGate& gate, double t, double roll, double pitch) -> std::optional<std::array<double, 2>> {
+            const auto tilt = gate.level({t, roll, pitch});
+            return tilt ? std::optional(std::array{tilt->roll, tilt->pitch}) : std::nullopt;
+          },
+          "t"_a, "roll"_a, "pitch"_a,
+          "Roll and pitch of the robot [rad]; None where no robot drives like that, or the mounting is not known.")
+      .def_prop_ro("mounting", &AttitudeGate::mounting);
+}
+
 }  // namespace
 
 void bind_recordings(nb::module_& m) {
+  m.attr("SAME_STAMP") = kSameStamp;  // [s] stamps no further apart are the same
+  bind_attitudes(m);
   nb::class_<Recording>(m, "Recording", "One recorded run, each stream in the order of its stamps.")
       .def(
           "__init__",

@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kPiece = 0.05;     // [s] over which a twist is averaged
-constexpr double kLongest = 0.02;   // [s] of a step; over it the yaw rate in the drag is held
-constexpr double kRounding = 1e-9;  // [s]
+constexpr double kPiece = 0.05;    // [s] over which a twist is averaged
+constexpr double kLongest = 0.02;  // [s] of a step; over it the yaw rate in the drag is held
 
 /// Twists averaged over pieces.
 class Pieces {
@@ -26,7 +26,7 @@ class Pieces {
     sum_.vy += duration * twist.vy;
     sum_.omega += duration * twist.omega;
     seconds_ += duration;
-    if (seconds_ >= kPiece - kRounding) {
+    if (!later(kPiece, seconds_)) {
       close();
     }
   }
@@ -59,7 +59,7 @@ class Drive {
   /// Under a command held over [from, to] [s].
   void hold(const BodyTwist& command, double from, double to) {
     double now = from;
-    while (to - now > kRounding) {
+    while (later(to, now)) {
       double next = std::min(to, now + kLongest);
       const KnownMotion* motion = span_.measured && !set_ ? &*span_.measured : nullptr;
       const bool measured = motion != nullptr && motion->t < next;
@@ -74,7 +74,7 @@ class Drive {
         state_.speed = motion->speed;
         set_ = true;
       }
-      if (now >= span_.start - kRounding && next - now > kRounding) {
+      if (!later(span_.start, now) && later(next, now)) {
         const CarState middle{.speed = 0.5 * (before.speed + state_.speed),
                               .steering = 0.5 * (before.steering + state_.steering)};
         pieces_.add(now, with_rest(car_twist(car_, middle), 0.5 * (now + next)), next - now);

@@ -7,12 +7,10 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
-namespace {
-
-constexpr double kRounding = 1e-9;  // [s] of stamps
-
-}  // namespace
+namespace {}  // namespace
 
 void HeldInputs::push(double t, Eigen::VectorXd input) {
   if (!std::isfinite(t) || !input.allFinite()) {
@@ -29,7 +27,7 @@ void HeldInputs::push(double t, Eigen::VectorXd input) {
 
 /// The first of them.
 HeldInputs::Inputs::const_iterator HeldInputs::later_than(double t) const {
-  return std::ranges::upper_bound(inputs_, t, {}, [](const auto& input) { return input.first - kRounding; });
+  return std::ranges::upper_bound(inputs_, t, {}, [](const auto& input) { return input.first - kSameStamp; });
 }
 
 void HeldInputs::forget_before(double t) {

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
 
-constexpr double kRounding = 1e-9;                        // [s] of stamps
 constexpr std::array<double, 4> kAt{0.0, 0.5, 0.5, 1.0};  // of the step, where the method looks
 constexpr std::array<double, 4> kShare{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
 
@@ -18,10 +19,10 @@ constexpr std::array<double, 4> kShare{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.
 template <class Step>
 void in_steps(const HeldInputs& inputs, const DynamicsSpan& span, const Step& step) {
   double t = span.start;
-  while (t < span.end - kRounding) {
+  while (later(span.end, t)) {
     const Eigen::VectorXd& input = inputs.at(t);
     const double until = inputs.until(t, span.end);
-    const double pieces = std::max(1.0, std::ceil((until - t) / span.longest_step - kRounding));
+    const double pieces = std::max(1.0, std::ceil((until - t - kSameStamp) / span.longest_step));
     for (long left = std::lround(pieces); left > 0; --left) {
       step((until - t) / pieces, input);
     }

@@ -10,15 +10,15 @@
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kSlice = 2;    // segments that are linearised at a time
-SLIPWISE_TUNING(kTolerance, 0.03);   // of -2 log posterior: a sixth of a standard deviation
-constexpr double kSameStamp = 1e-6;  // [s] segments closer than this meet at one pose
+constexpr std::size_t kSlice = 2;   // segments that are linearised at a time
+SLIPWISE_TUNING(kTolerance, 0.03);  // of -2 log posterior: a sixth of a standard deviation
 
 /// Factor of the variances of what measured a segment, where the filters have learned a `scale`.
 Eigen::Vector3d noise_size(const Segment& segment, const Eigen::Vector3d& scale) {
@@ -55,8 +55,7 @@ void FilterRefit::weight(const DrivenSegment& driven) {
     return;
   }
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-  const bool meet =
-      last_ && std::abs(segment.start - last_->end) < kSameStamp && source_number(segment) == source_number(*last_);
+  const bool meet = last_ && same_stamp(segment.start, last_->end) && source_number(segment) == source_number(*last_);
   const bool poses = !segment.chords && !at.path.heading_std;
   if (!model_.learned().dynamics && poses && meet) {
     const PoseStdRatio& met = segment.pose_std_ratio.front();

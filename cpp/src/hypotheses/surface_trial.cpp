@@ -8,13 +8,13 @@
 #include "slipwise/hypotheses/model_average.hpp"
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
 
 constexpr std::size_t kProbes = 20;     // segments by which surfaces are compared
 constexpr std::size_t kProbeEvery = 4;  // segments from one to the next
-constexpr double kSameStamp = 1e-6;     // [s]
 
 }  // namespace
 
@@ -59,7 +59,7 @@ SurfaceMemory ModelAverage::remember() const {
 
 std::size_t ModelAverage::recent_since(double since) const {
   std::size_t first = recent_.size();
-  while (first > 0 && recent_[first - 1].segment.start >= since - kSameStamp) {
+  while (first > 0 && !later(since, recent_[first - 1].segment.start)) {
     --first;
   }
   return first;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/motion/motion_model.hpp"
@@ -44,7 +45,7 @@ ActuatorAxis ActuatorChannel::axis(const Eigen::VectorXd& state, std::size_t i) 
 
 /// Makes the state that of the window's start; whether any axis moves.
 bool ActuatorChannel::begin(const ChannelWindow& window) {
-  if (std::abs(window.observed.edges.front() - until_) > kSameStamp) {
+  if (!same_stamp(window.observed.edges.front(), until_)) {
     lose_state();
   }
   until_ = window.observed.edges.back();

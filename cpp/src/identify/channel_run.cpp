@@ -11,6 +11,7 @@
 
 #include "slipwise/filter/heavy_tails.hpp"
 #include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
@@ -94,7 +95,7 @@ void ChannelFilter::learn(const ChannelWindow& window) {
 }
 
 void ChannelFilter::begin(const ChannelWindow& window) {
-  if (std::abs(window.observed.edges.front() - until_) > kSameStamp) {
+  if (!same_stamp(window.observed.edges.front(), until_)) {
     axes_.clear();
   }
   until_ = window.observed.edges.back();

@@ -9,6 +9,7 @@
 #include "slipwise/actuator/actuator_output.hpp"
 #include "slipwise/identify/limited_actuator_parameters.hpp"
 #include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
@@ -338,7 +339,7 @@ LimitedActuatorFit::Spread LimitedActuatorFit::spread(const LimitedActuator& dri
       Eigen::VectorXd block = Eigen::VectorXd::Zero(size);
       double block_end = record.t.front() + kSecondsAlike;
       for (std::size_t i = 1; row < end; ++row, ++i) {
-        if (record.t[i] > block_end) {
+        if (later(record.t[i], block_end)) {
           meat += block * block.transpose();
           block.setZero();
           block_end = record.t[i] + kSecondsAlike;

@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
-
-constexpr double kRounding = 1e-6;  // [s] of stamps; and, of an interval, what it may be too short by
 
 /// Sums what is held until an interval is closed.
 class Mean {
@@ -57,10 +57,10 @@ WheelMeans wheel_means(const InputHistory& wheels, double start, double end, dou
     throw std::invalid_argument("wheel speeds are averaged from a start to a later end, got " + std::to_string(start) +
                                 " s and " + std::to_string(end) + " s");
   }
-  Mean mean(start, wheels.at(start));
-  for (std::size_t i = wheels.count_until(start); i < wheels.size() && wheels.time(i) < end - kRounding; ++i) {
+  Mean mean(start, wheels.at(start + kSameStamp));
+  for (std::size_t i = wheels.count_until(start + kSameStamp); i < wheels.size() && later(end, wheels.time(i)); ++i) {
     const double now = wheels.time(i);
-    if (mean.lasted(now) >= shortest * (1.0 - kRounding) && end - now >= 0.5 * shortest) {
+    if (!later(shortest, mean.lasted(now)) && !later(0.5 * shortest, end - now)) {
       mean.close(now);
     }
     mean.hold(now, wheels.sample(i));

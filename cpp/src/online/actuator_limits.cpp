@@ -9,13 +9,13 @@
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/identify/actuator_filter.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/behind_limits.hpp"
 
 namespace slipwise {
 namespace {
 
 constexpr double kSpacing = 0.05;        // [s] between the twists that are looked at
-constexpr double kRounding = 1e-6;       // [s] of stamps
 constexpr std::size_t kFewTwists = 400;  // 20 s of driving; with fewer, chance passes for limits
 
 /// Commands and twists of a stretch while it grows.
@@ -33,8 +33,8 @@ class Stretch {
     }
     for (std::size_t i = 0; i < segment.wheels.size(); ++i) {
       const double t = segment.wheels.time(i);
-      const bool later = t_.empty() || t >= t_.back() + kSpacing - kRounding;
-      if (later && t >= segment.start - kRounding && t <= segment.end) {
+      const bool apart = t_.empty() || !later(t_.back() + kSpacing, t);
+      if (apart && !later(segment.start, t) && !later(t, segment.end)) {
         t_.push_back(t);
         wheels_.push_back(segment.wheels.sample(i));
       }
@@ -94,7 +94,7 @@ std::vector<WheelRecord> drive_records(std::span<const WheelSegment> wheels) {
     }
   };
   for (const WheelSegment& segment : wheels) {
-    if (stretch && std::abs(segment.start - stretch->end()) < kRounding) {
+    if (stretch && same_stamp(segment.start, stretch->end())) {
       stretch->add(segment);
       continue;
     }

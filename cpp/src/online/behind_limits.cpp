@@ -10,6 +10,7 @@
 
 #include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/filter/weighting.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
@@ -51,10 +52,10 @@ bool is_clear(double gain, std::span<const DrivenSegment> segments) {
 }
 
 std::vector<DrivenSegment> segments_since(std::span<const DrivenSegment> segments, double t) {
-  std::vector<DrivenSegment> later;
-  std::ranges::copy_if(segments, std::back_inserter(later),
-                       [&](const DrivenSegment& segment) { return segment.segment.start >= t; });
-  return later;
+  std::vector<DrivenSegment> found;
+  std::ranges::copy_if(segments, std::back_inserter(found),
+                       [&](const DrivenSegment& segment) { return !later(t, segment.segment.start); });
+  return found;
 }
 
 }  // namespace slipwise

@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
 
 constexpr double kInterval = 0.5;   // [s] over which rates are means
 constexpr double kLongest = 1.5;    // [s]; means over longer ones hide what the robot did
 constexpr double kFraction = 0.99;  // of the motion that stayed below a rate
-constexpr double kRounding = 1e-6;  // [s] of stamps
 
 /// Counts a rate by the way that it makes: much noise at a standstill is no motion.
 void add_signed(std::array<RobustGreatest, 2>& greatest, double rate, double seconds) {
@@ -46,13 +47,13 @@ void RobustGreatest::add(double magnitude, double weight) {
 double RobustGreatest::value(double fraction) const { return std::min(range_.upper(fraction), greatest_); }
 
 void BodyRates::push(const MeasuredPose& pose) {
-  if (!from_ || from_->frame != pose.frame || from_->position != pose.position || pose.t - from_->t > kLongest) {
+  if (!from_ || from_->frame != pose.frame || from_->position != pose.position || later(pose.t, from_->t + kLongest)) {
     restart();
     from_ = pose;
     return;
   }
   const double seconds = pose.t - from_->t;
-  if (seconds < kInterval - kRounding) {
+  if (later(kInterval, seconds)) {
     return;
   }
   const Pose2 first{from_->x, from_->y, from_->yaw};

@@ -9,16 +9,16 @@
 #include <ranges>
 #include <utility>
 
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/learner_times.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kInterval = 0.2;    // [s] between the poses of a twist; shorter, noise of poses hides the motion
-constexpr double kLongest = 1.0;     // [s] of a twist; over longer ones a car does too much
-constexpr double kSameStamp = 1e-6;  // [s]
-constexpr double kBefore = 5.0;      // [s] of twists before a segment, which delays and lags behind the curves ask for
-constexpr double kLongAgo = 1e5;     // [s] the first of them was held for
+constexpr double kInterval = 0.2;  // [s] between the poses of a twist; shorter, noise of poses hides the motion
+constexpr double kLongest = 1.0;   // [s] of a twist; over longer ones a car does too much
+constexpr double kBefore = 5.0;    // [s] of twists before a segment, which delays and lags behind the curves ask for
+constexpr double kLongAgo = 1e5;   // [s] the first of them was held for
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 BodyTwist faster(const BodyTwist& a, const BodyTwist& b) {
@@ -49,7 +49,7 @@ void CarStream::start_run() {
 
 const CarStream::KnownCurves& CarStream::known_at(double t) const {
   for (const KnownCurves& known : known_ | std::views::reverse) {
-    if (known.until <= t + kSameStamp) {
+    if (!later(known.until, t)) {
       return known;
     }
   }
@@ -84,8 +84,8 @@ void CarStream::push_pose(const MeasuredPose& pose) {
     }
   }
   const double seconds = since_ ? pose.t - since_->t : 0.0;
-  const bool joined = since_ && pose.frame == since_->frame && seconds <= kLongest;
-  if (joined && seconds < kInterval - kSameStamp) {
+  const bool joined = since_ && pose.frame == since_->frame && !later(seconds, kLongest);
+  if (joined && later(kInterval, seconds)) {
     return;
   }
   const bool given = !given_.unknown_since(filter_.until(), pose.t).has_value();
@@ -120,7 +120,7 @@ void CarStream::drop_before(double t) {
 InputHistory CarStream::inputs(double start, double end, double known, const std::vector<InputSample>& future) const {
   CarSpan span{.start = start - kBefore, .end = end};
   for (const KnownMotion& motion : motions_) {
-    if (motion.t <= start + kSameStamp) {
+    if (!later(motion.t, start)) {
       span.measured = motion;
     }
   }

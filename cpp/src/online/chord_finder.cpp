@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
@@ -31,7 +32,7 @@ std::optional<MeasuredPose> ChordFinder::push(const MeasuredPose& position, cons
     positions_.clear();
     last_yaw_.reset();
   }
-  while (!positions_.empty() && positions_.front().t < position.t - kOldest) {
+  while (!positions_.empty() && later(position.t - kOldest, positions_.front().t)) {
     positions_.pop_front();
   }
   const double length = length_for(position, inputs);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
@@ -39,12 +40,12 @@ void GyroBuffer::learn_bias(double measured, double variance) {
 }
 
 void GyroBuffer::see_inputs(double t, const InputBuffer& inputs, double still_speed) {
-  if (seen_until_ < t - kCourseTime) {
+  if (!seen_until_ || later(t, *seen_until_ + kCourseTime)) {
     seen_until_ = t;
     return;
   }
-  while (seen_until_ + kStillTime + kCalm <= t) {
-    const double begin = seen_until_;
+  while (!later(*seen_until_ + kStillTime + kCalm, t)) {
+    const double begin = *seen_until_;
     seen_until_ = begin + kStillTime;
     variance_ += squared(kDrift) * kStillTime;
     const auto turned = angle(begin, begin + kStillTime);
@@ -66,7 +67,7 @@ void GyroBuffer::see_course(const MeasuredPose& position) {
     return;
   }
   const double seconds = position.t - course_->t;
-  if (seconds < kCourseTime) {
+  if (later(kCourseTime, seconds)) {
     return;
   }
   if (const auto turned = angle(course_->t, position.t)) {
@@ -77,7 +78,7 @@ void GyroBuffer::see_course(const MeasuredPose& position) {
 }
 
 std::optional<double> GyroBuffer::angle(double start, double end) const {
-  auto next = std::ranges::upper_bound(samples_, start, {}, &YawRate::t);
+  auto next = std::ranges::upper_bound(samples_, start + kSameStamp, {}, &YawRate::t);
   if (next == samples_.begin() || next == samples_.end()) {
     return std::nullopt;
   }
@@ -85,13 +86,13 @@ std::optional<double> GyroBuffer::angle(double start, double end) const {
   double now = start;
   for (; next != samples_.end(); ++next) {
     const YawRate& before = *std::prev(next);
-    if (next->t - before.t > kMissing) {
+    if (later(next->t, before.t + kMissing)) {
       return std::nullopt;
     }
     const double until = std::min(next->t, end);
     sum += (until - now) * at(before, *next, 0.5 * (now + until));
     now = until;
-    if (next->t >= end) {
+    if (!later(end, next->t)) {
       return sum;
     }
   }
@@ -118,7 +119,7 @@ void GyroBuffer::drop_before(double t) {
 void GyroBuffer::restart() {
   samples_.clear();
   course_.reset();
-  seen_until_ = 0.0;
+  seen_until_.reset();
 }
 
 }  // namespace slipwise

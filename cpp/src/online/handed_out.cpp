@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/segment_stream.hpp"
 
@@ -47,11 +48,11 @@ void SegmentStream::set_course(Segment& segment, const SegmentCut& cut) const {
 void SegmentStream::turn_on(const YawRate& sample) {
   if (turned_until_) {
     const double seconds = sample.t - turned_until_->t;
-    breaks_ += seconds > kMissing ? 1 : 0;
+    breaks_ += later(seconds, kMissing) ? 1 : 0;
     turned_ += 0.5 * seconds * (sample.rate + turned_until_->rate);
   }
   turned_until_ = sample;
-  if (poses_.empty() ? sample.t >= now_ + kHeadings : sample.t >= poses_.back().t + kHeadings) {
+  if (!later((poses_.empty() ? now_ : poses_.back().t) + kHeadings, sample.t)) {
     poses_.push_back({.t = sample.t, .x = 0.0, .y = 0.0, .yaw = turned_, .frame = breaks_});
   }
 }

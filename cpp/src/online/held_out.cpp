@@ -7,11 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
 
-constexpr double kRounding = 1e-9;  // [s] of stamps
-constexpr std::size_t kKept = 16;   // errors after which a fit is kept: those of the last horizons
+constexpr std::size_t kKept = 16;  // errors after which a fit is kept: those of the last horizons
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
 
@@ -76,7 +77,7 @@ HorizonErrors::HorizonErrors() {
 
 const HorizonErrors::Known& HorizonErrors::before(double t) const {
   for (std::size_t i = known_.size() - 1; i > 0; --i) {
-    if (known_[i].until <= t + kRounding) {
+    if (!later(known_[i].until, t)) {
       return known_[i];
     }
   }

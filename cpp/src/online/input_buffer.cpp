@@ -8,13 +8,14 @@
 #include <limits>
 #include <utility>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
 
-constexpr double kLeadIn = 1.0;     // [s] before the first wheel speed; no clock offset is larger
-constexpr double kStep = 0.1;       // [s] an actuator with a lag is integrated in steps of no more: repeats cost time
-constexpr double kRounding = 1e-6;  // of a step
-constexpr double kLongAgo = 1e5;    // [s] a drivetrain has forgotten what came before
+constexpr double kLeadIn = 1.0;   // [s] before the first wheel speed; no clock offset is larger
+constexpr double kStep = 0.1;     // [s] an actuator with a lag is integrated in steps of no more: repeats cost time
+constexpr double kLongAgo = 1e5;  // [s] a drivetrain has forgotten what came before
 
 /// Inputs without those that repeat the one before, but for one in each `kStep`.
 class Thinned {
@@ -25,7 +26,7 @@ class Thinned {
       since_ = sample.t;
       step_ = 0.0;
     }
-    const double step = std::floor((sample.t - since_) / kStep + kRounding);
+    const double step = std::floor((sample.t - since_ + kSameStamp) / kStep);
     if (!repeats || step != step_) {
       append(sample);
     }
@@ -74,7 +75,7 @@ BodyTwist InputBuffer::fastest_until(double t) const {
 }
 
 std::size_t InputBuffer::count_until(double t) const {
-  const auto after = std::ranges::upper_bound(samples_, t, {}, &InputSample::t);
+  const auto after = std::ranges::upper_bound(samples_, t + kSameStamp, {}, &InputSample::t);
   return static_cast<std::size_t>(std::distance(samples_.begin(), after));
 }
 
@@ -85,7 +86,7 @@ std::optional<BodyTwist> InputBuffer::held_at(double t) const {
 
 std::optional<BodyTwist> InputBuffer::known_at(double t) const {
   const std::size_t count = count_until(t);
-  const bool known = count > 0 && t - samples_[count - 1].t <= unknown_after_;
+  const bool known = count > 0 && !later(t, samples_[count - 1].t + unknown_after_);
   return known ? std::optional(samples_[count - 1].twist) : std::nullopt;
 }
 
@@ -96,11 +97,11 @@ std::optional<double> InputBuffer::unknown_since(double start, double end) const
   }
   for (; next <= samples_.size(); ++next) {
     const double until = samples_[next - 1].t + unknown_after_;
-    const bool resumed = next < samples_.size() && samples_[next].t <= until;
-    if (!resumed && until < end) {
+    const bool resumed = next < samples_.size() && !later(samples_[next].t, until);
+    if (!resumed && later(end, until)) {
       return std::max(until, start);
     }
-    if (next == samples_.size() || samples_[next].t >= end) {
+    if (next == samples_.size() || !later(end, samples_[next].t)) {
       break;
     }
   }
@@ -114,8 +115,8 @@ std::optional<double> InputBuffer::first_after(double t) const {
 
 BodyTwist InputBuffer::fastest(double start, double end) const {
   BodyTwist most{};
-  for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1; i < samples_.size() && samples_[i].t < end;
-       ++i) {
+  for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1;
+       i < samples_.size() && later(end, samples_[i].t); ++i) {
     most.v = std::max(most.v, speed(samples_[i].twist));
     most.omega = std::max(most.omega, std::abs(samples_[i].twist.omega));
   }
@@ -162,12 +163,13 @@ InputHistory InputBuffer::slice(double start, double end, SliceKind kind,
   if (kind == SliceKind::Wheels && from < samples_.size() && samples_[from].t == first_) {
     thinned.append({first_ - kLeadIn, samples_[from].twist});
   }
-  for (std::size_t i = from; i < samples_.size() && samples_[i].t <= end; ++i) {
+  for (std::size_t i = from; i < samples_.size() && !later(samples_[i].t, end); ++i) {
     const bool continues = i == from && samples_[i].t > first_;
     add(continues ? InputSample{samples_[i].t - kLongAgo, samples_[i].twist} : samples_[i]);
   }
   for (const InputSample& sample : future) {
-    if (sample.t > (samples_.empty() ? -std::numeric_limits<double>::infinity() : newest()) && sample.t <= end) {
+    if (later(sample.t, samples_.empty() ? -std::numeric_limits<double>::infinity() : newest()) &&
+        !later(sample.t, end)) {
       add(sample);
     }
   }

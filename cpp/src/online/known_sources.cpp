@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "slipwise/lie/se2.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
@@ -91,7 +92,7 @@ KnownSources::Found KnownSources::see(const MotionPosterior& posterior, SourceSe
         with_noise(noise_, item.classes, posterior.noise_scale, driven.segment.source.value_or(SegmentSource{}));
   };
   place();
-  if (driven.segment.start >= seen_until_[item.source] - kRounding) {
+  if (!later(seen_until_[item.source], driven.segment.start)) {
     seen_until_[item.source] = driven.segment.end;
     look(posterior, driven, item);
     place();

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/motion_learner.hpp"
 #include "slipwise/online/pose_limits.hpp"
@@ -75,18 +76,20 @@ std::vector<DrivenSegment> MotionLearner::complete_now() const {
     complete.push_back(std::move(segment));
   }
   const double since = stream_.newest() - kRecent * settings_.stream.segment_length;
-  std::erase_if(complete, [&](const DrivenSegment& each) { return each.segment.start <= since; });
+  std::erase_if(complete, [&](const DrivenSegment& each) { return !later(each.segment.start, since); });
   return complete;
 }
 
 PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, double horizon, double embargo) {
   check(future, horizon);
+  std::vector<InputSample> inputs = future;
+  std::ranges::for_each(inputs, [this](InputSample& sample) { sample.t = clock_.counted(sample.t); });
   if (stream_.newest() == -kNever) {
     throw std::invalid_argument("nothing was measured in this run yet: push measurements before a prediction");
   }
   work_until(stream_.newest() - kReady);
   const Knowledge& known = known_at(stream_.newest() - std::max(embargo, kReady));
-  const DrivenSegment ahead = stream_.segment_ahead(horizon, future);
+  const DrivenSegment ahead = stream_.segment_ahead(horizon, inputs);
   SlipNow slip = recent_slip_.after(*known.disturbance, known.motion, recent_before(stream_.newest()));
   if (settings_.learn_disturbance) {
     for (const DrivenSegment& segment : complete_now()) {
@@ -111,6 +114,8 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
     path.poses.push_back(along[i].pose);
     path.covariances.emplace_back(path.students.back().inflation * along[i].covariance);
   }
+  path.start = clock_.stamp(path.start);
+  std::ranges::for_each(path.t, [this](double& t) { t = clock_.stamp(t); });
   return path;
 }
 
@@ -128,6 +133,7 @@ LearnedModel MotionLearner::model() const {
                        .segments = complete.hypotheses_.count(),
                        .rejected = complete.rejected_,
                        .car = complete.stream_.car_curves()};
+  learned.known.until = clock_.stamp(learned.known.until);
   const double spacing = complete.stream_.wheel_interval();
   learned.known.motion = supported(learned.known.motion, spacing, learned.segments);
   learned.known.slip = supported(learned.known.slip, spacing, learned.segments);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "slipwise/filter/body_force.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/motion_learner.hpp"
 
@@ -23,7 +24,7 @@ Knowledge MotionLearner::now_known(double until) const {
 /// The newest of what was known at `t` [s].
 const Knowledge& MotionLearner::known_at(double t) const {
   for (std::size_t i = known_.size() - 1; i > 0; --i) {
-    if (known_[i].until <= t + kRounding) {
+    if (!later(known_[i].until, t)) {
       return known_[i];
     }
   }
@@ -51,7 +52,7 @@ SegmentList MotionLearner::recent_before(double t) const {
   }
   const double since = t - kRecent * settings_.stream.segment_length;
   for (const DrivenSegment& segment : recent_) {
-    if (segment.known_at <= t + kRounding && segment.segment.start > since) {
+    if (!later(segment.known_at, t) && later(segment.segment.start, since)) {
       found.push_back(&segment);
     }
   }

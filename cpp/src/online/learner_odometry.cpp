@@ -84,7 +84,7 @@ std::optional<Odometry> MotionLearner::odometry() {
   const Eigen::Vector3d twist = of_sensor * log(instant.motion) / kInstant;
   const Eigen::Matrix3d lasting = (instant.covariance() - instant.white) / (kInstant * kInstant);
   const Eigen::Matrix3d twist_covariance = lasting + instant.white / (kInstant * kTwistTime);
-  return Odometry{.t = now,
+  return Odometry{.t = clock_.stamp(now),
                   .frame = sensor->frame,
                   .pose = base,
                   .covariance = at_base * sensor->covariance * at_base.transpose(),
@@ -105,9 +105,13 @@ MotionState MotionLearner::motion_monitor() {
     const InputBuffer::Driven driven = inputs.driven(start, end);
     return end > start ? (driven.distance + kTurnRadius * driven.angle) / (end - start) : 0.0;
   };
-  return monitor_.at(
-      stream_.newest(), known_until,
-      {.known = [this](double t) { return leg_knowledge(t, kOfWindow); }, .leg = leg_of, .asked = asked});
+  MotionState state =
+      monitor_.at(stream_.newest(), known_until,
+                  {.known = [this](double t) { return leg_knowledge(t, kOfWindow); }, .leg = leg_of, .asked = asked});
+  if (state.since) {
+    state.since = clock_.stamp(*state.since);
+  }
+  return state;
 }
 
 }  // namespace slipwise

@@ -27,7 +27,7 @@ void MotionLearner::forget(double fraction) {
 void MotionLearner::start_drive(const DriveStart& start) {
   end_run();
   const std::size_t run = runs_;
-  const double ended = newest();
+  const double ended = stream_.newest();
   start_run();
   hypotheses_.start_drive(disturbance_.law(), start);
   note_surfaces(run, ended);
@@ -45,7 +45,7 @@ void MotionLearner::cue_surface(const std::string& label) {
   }
   work_through();  // what waits was driven on the surface before
   hypotheses_.cue_surface(disturbance_.law(), label);
-  note_surfaces(runs_, newest());
+  note_surfaces(runs_, stream_.newest());
   known_.back() = now_known(known_.back().until);
 }
 
@@ -53,7 +53,7 @@ void MotionLearner::cue_terrain(const TerrainAnswer& answer) {
   check_answer(answer);
   work_through();  // what waits was driven before
   hypotheses_.hear_terrain(disturbance_.law(), answer);
-  note_surfaces(runs_, newest());
+  note_surfaces(runs_, stream_.newest());
   known_.back() = now_known(known_.back().until);
 }
 
@@ -62,13 +62,13 @@ void MotionLearner::begin_with(const KnownBefore& known, const DisturbanceModel&
   if (settings_.learn_disturbance) {
     disturbance_.begin_with(law);
   }
-  note_surfaces(runs_, newest());
+  note_surfaces(runs_, stream_.newest());
   known_.back() = now_known(known_.back().until);
 }
 
 std::vector<std::string> MotionLearner::add_surfaces(const KnownBefore& other) {
   std::vector<std::string> names = hypotheses_.add_surfaces(disturbance_.law(), other);
-  note_surfaces(runs_, newest());
+  note_surfaces(runs_, stream_.newest());
   return names;
 }
 
@@ -79,7 +79,7 @@ void MotionLearner::consider_surfaces(double t) {
 
 void MotionLearner::note_surfaces(std::size_t run, double t) {
   for (SurfaceEvent& event : hypotheses_.take_surface_events()) {
-    surface_events_.push_back({.event = std::move(event), .run = run, .t = t});
+    surface_events_.push_back({.event = std::move(event), .run = run, .t = clock_.stamp(t)});
   }
   while (surface_events_.size() > kMostEvents) {
     surface_events_.pop_front();

@@ -12,7 +12,9 @@
 
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/learner_times.hpp"
+#include "slipwise/online/sample_gate.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
 #include "slipwise/online/student_t.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
@@ -94,13 +96,19 @@ MotionLearner MotionLearner::completed() const {
   return complete;
 }
 
-/// Where the stamps of a run begin before those of the last one ended, the clock was set again: all is known by then.
-void MotionLearner::see_stamp(double t) {
-  if (!run_begins_ || !std::isfinite(t)) {
-    return;
+/// A stamp as all of them are counted here. Where those of a run begin before those of the last one ended, the clock
+/// was set again: all is known by then.
+double MotionLearner::counted(double stamp) {
+  if (!run_begins_ || !(std::abs(stamp) <= kLatestStamp)) {
+    return clock_.counted(stamp);
   }
   run_begins_ = false;
-  if (t < before_run_) {
+  const bool first = before_run_ == -kNever;
+  const bool set_again = later(before_run_, clock_.counted(stamp));
+  if (first || set_again) {
+    clock_.start_at(stamp);
+  }
+  if (set_again) {
     for (Knowledge& known : known_) {
       known.until = -kNever;
     }
@@ -108,10 +116,11 @@ void MotionLearner::see_stamp(double t) {
     std::ranges::for_each(errors_, &HorizonErrors::restart_clock);
     before_run_ = -kNever;
   }
+  return clock_.counted(stamp);
 }
 
 void MotionLearner::push_command(double t, const BodyTwist& twist) {
-  see_stamp(t);
+  t = counted(t);
   stream_.push_command({t, twist});
   take_in();
   pose_filter_.forget_without(t);
@@ -119,7 +128,7 @@ void MotionLearner::push_command(double t, const BodyTwist& twist) {
 }
 
 void MotionLearner::push_wheels(double t, const BodyTwist& twist) {
-  see_stamp(t);
+  t = counted(t);
   stream_.push_wheels({t, twist});
   take_in();
   pose_filter_.forget_without(t);
@@ -127,24 +136,25 @@ void MotionLearner::push_wheels(double t, const BodyTwist& twist) {
 }
 
 void MotionLearner::push_attitude(double t, double roll, double pitch) {
-  see_stamp(t);
-  const double tilt = std::max(std::abs(roll), std::abs(pitch));
-  steepest_ = std::isfinite(tilt) ? std::max(steepest_, tilt) : steepest_;
-  stream_.push_attitude(t, roll, pitch);
+  t = counted(t);
+  if (const auto tilt = stream_.push_attitude({t, roll, pitch})) {
+    steepest_ = std::max({steepest_, std::abs(tilt->roll), std::abs(tilt->pitch)});
+  }
   take_in();
   pose_filter_.forget_without(t);
   work();
 }
 
 void MotionLearner::push_gyro(double t, double rate) {
-  see_stamp(t);
+  t = counted(t);
   stream_.push_gyro({t, rate});
   take_in();
   work();
 }
 
-void MotionLearner::push_pose(const MeasuredPose& pose, bool learned) {
-  see_stamp(pose.t);
+void MotionLearner::push_pose(const MeasuredPose& measured, bool learned) {
+  MeasuredPose pose = measured;
+  pose.t = counted(pose.t);
   if (stream_.push_pose(pose, learned) && !pose.position && pose.source == 0) {
     pose_filter_.push(pose);
     monitor_.push(pose);
@@ -238,7 +248,7 @@ void MotionLearner::work_until(double t) {
     const auto* target = std::get_if<TargetSegment>(&item);
     return target != nullptr ? target->driven.known_at : std::get<DrivenSegment>(item).known_at;
   };
-  while (!waiting_.empty() && known_at(waiting_.front()) <= t + kRounding) {
+  while (!waiting_.empty() && !later(known_at(waiting_.front()), t)) {
     work();
   }
 }
@@ -322,8 +332,8 @@ void MotionLearner::judge(const TargetSegment& target) {
   const auto prediction = std::make_shared<const HeldOutPrediction>(
       HeldOutPrediction{.run = runs_,
                         .horizon = target.horizon,
-                        .start = segment.start,
-                        .end = segment.end,
+                        .start = clock_.stamp(segment.start),
+                        .end = clock_.stamp(segment.end),
                         .pose = expected.pose,
                         .covariance = student.inflation * expected.covariance,
                         .student = student,
@@ -332,7 +342,7 @@ void MotionLearner::judge(const TargetSegment& target) {
                         .measured = measured,
                         .baseline = pose_after(baseline_model(), Eigen::VectorXd(0), driven, target.baseline),
                         .in_sample = pose_after(after.motion->model, after.motion->estimate.mean, driven),
-                        .learned_until = at_start ? segment.start : std::min(used, segment.start)});
+                        .learned_until = clock_.stamp(at_start ? segment.start : std::min(used, segment.start))});
   held_out_[target.horizon].keep(prediction);
   say({.kind = LearnerEvent::Kind::HeldOut, .run = runs_, .t = segment.end, .prediction = prediction});
 }
@@ -346,7 +356,9 @@ void MotionLearner::count(const Rejected& rejected) {
        .reason = rejected.reason});
 }
 
+/// Its stamp is as counted here.
 void MotionLearner::say(LearnerEvent event) {
+  event.t = clock_.stamp(event.t);
   events_.push_back(std::move(event));
   if (events_.size() > kMostEvents) {
     events_.pop_front();

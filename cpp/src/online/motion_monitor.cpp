@@ -8,13 +8,13 @@
 
 #include "slipwise/lie/angle.hpp"
 #include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
 
 constexpr double kWindow = 0.6;           // [s]
 constexpr double kShortestWindow = 0.25;  // [s]
-constexpr double kRounding = 1e-6;        // [s] of stamps
 constexpr double kStuckFraction = 0.2;    // of the expected motion: a robot that moves by less is stuck,
 constexpr double kMovesFraction = 0.5;    // and by more it moves
 constexpr double kMisfit = 0.1;           // of the expected motion that a learned model may be off for a moment
@@ -104,7 +104,7 @@ void MotionMonitor::follow(Finding finding, double t, const LegKnowledge& known)
   }
   if (finding == Finding::Stuck) {
     suspected_ = suspected_.value_or(t);
-    if (!state_.stuck && t - *suspected_ > kConfirmed - kRounding) {
+    if (!state_.stuck && !later(*suspected_ + kConfirmed, t)) {
       state_.stuck = true;
       state_.since = suspected_;
       before_ = known;
@@ -112,7 +112,7 @@ void MotionMonitor::follow(Finding finding, double t, const LegKnowledge& known)
     return;
   }
   suspected_.reset();
-  if (finding == Finding::Moves || t - expected_ > kForgotten) {
+  if (finding == Finding::Moves || later(t, expected_ + kForgotten)) {
     state_.stuck = false;
     state_.since.reset();
     before_.reset();
@@ -127,7 +127,7 @@ void MotionMonitor::take(const MeasuredPose& pose, const Model& model) {
   const LegKnowledge known = before_ ? *before_ : model.known(pose.t);
   if (!window_.empty()) {
     const MeasuredPose& last = window_.back();
-    const auto step = pose.t - last.t <= kWindow ? model.leg(known, last.t, pose.t) : std::nullopt;
+    const auto step = !later(pose.t, last.t + kWindow) ? model.leg(known, last.t, pose.t) : std::nullopt;
     if (step) {
       Eigen::Vector3d error = between(at_pose(last), at_pose(pose)).vector() - step->motion.vector();
       error.z() = wrap_angle(error.z());
@@ -137,11 +137,11 @@ void MotionMonitor::take(const MeasuredPose& pose, const Model& model) {
     }
   }
   window_.push_back(pose);
-  while (window_.front().t < pose.t - kWindow - kRounding) {
+  while (later(pose.t - kWindow, window_.front().t)) {
     window_.pop_front();
   }
   const MeasuredPose& first = window_.front();
-  const auto leg = pose.t - first.t >= kShortestWindow ? model.leg(known, first.t, pose.t) : std::nullopt;
+  const auto leg = !later(first.t + kShortestWindow, pose.t) ? model.leg(known, first.t, pose.t) : std::nullopt;
   if (!leg) {
     state_.fraction.reset();
   }
@@ -161,7 +161,7 @@ MotionState MotionMonitor::at(double t, double known_until, const Model& model) 
     waiting_.pop_front();
     take(pose, model);
   }
-  if (!window_.empty() && t - window_.back().t > kForgotten) {  // no poses: nobody knows
+  if (!window_.empty() && later(t, window_.back().t + kForgotten)) {  // no poses: nobody knows
     state_ = {};
     suspected_.reset();
     before_.reset();

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/segment_stream.hpp"
@@ -37,7 +38,7 @@ bool SegmentStream::push_other(MeasuredPose pose, bool learned) {
   pose.t -= source.settings.late;
   pose.yaw = pose.position ? 0.0 : pose.yaw;
   const bool absurd = !(pose.std.xy >= 0.0) || !(pose.std.yaw >= 0.0);
-  if (absurd || pose.t < newest_ - settings_.latency) {
+  if (absurd || later(newest_ - settings_.latency, pose.t)) {
     reject(Stream::Pose, absurd ? Reason::NotFinite : Reason::TooLate, pose.t);
     return false;
   }
@@ -61,7 +62,7 @@ void SegmentStream::advance_others(double until) {
   };
   while (!others_.empty()) {
     PoseSource& source = *std::ranges::min_element(others_, {}, next);
-    if (source.waiting.empty() || next(source) > until) {
+    if (source.waiting.empty() || later(next(source), until)) {
       return;
     }
     const MeasuredPose raw = source.waiting.front();

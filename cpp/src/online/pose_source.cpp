@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/sample_gate.hpp"
 
 namespace slipwise {
@@ -20,11 +21,11 @@ std::optional<Reason> PoseSource::take(const MeasuredPose& pose) {
   if (const auto wrong = gate.check(pose.t, numbers)) {
     return wrong;
   }
-  if (!(pose.t > used)) {
+  if (!later(pose.t, used)) {
     return Reason::TooLate;
   }
-  const auto place = std::ranges::lower_bound(waiting, pose.t, {}, &MeasuredPose::t);
-  if (place != waiting.end() && place->t == pose.t) {
+  const auto same = std::ranges::lower_bound(waiting, pose.t - kSameStamp, {}, &MeasuredPose::t);
+  if (same != waiting.end() && same_stamp(same->t, pose.t)) {
     return Reason::DuplicateStamp;
   }
   if (pose.position != position_last) {
@@ -33,7 +34,7 @@ std::optional<Reason> PoseSource::take(const MeasuredPose& pose) {
   }
   MeasuredPose placed = pose;
   placed.frame += kFramesApart * breaks;
-  waiting.insert(place, placed);
+  waiting.insert(std::ranges::lower_bound(waiting, pose.t, {}, &MeasuredPose::t), placed);
   return std::nullopt;
 }
 

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <utility>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
 
 constexpr double kInterval = 0.2;  // [s] between the poses of a twist; shorter, noise of poses hides the motion
 constexpr double kLongest = 0.3;   // [s]; over longer ones, a ramp that they blur passes for one of the actuator
 constexpr double kStretch = 1.0;   // [s] from which on a stretch is complete
-constexpr double kRounding = 1e-9;
 
 /// A robot that stands still although it is commanded to move tells of a dead band.
 SegmentRules with_still(SegmentRules rules) {
@@ -41,10 +42,10 @@ std::vector<TwistStretch> PoseTwists::joined(const std::vector<SegmentCut>& cuts
   std::vector<TwistStretch> out;
   for (const SegmentCut& cut : cuts) {
     const double seconds = cut.second.t - cut.first.t;
-    if (stretch_ && std::abs(cut.first.t - stretch_->end) > kRounding) {
+    if (stretch_ && !same_stamp(cut.first.t, stretch_->end)) {
       close(out);
     }
-    if (cut.rejected || seconds > kLongest) {
+    if (cut.rejected || later(seconds, kLongest)) {
       close(out);
       continue;
     }
@@ -53,7 +54,7 @@ std::vector<TwistStretch> PoseTwists::joined(const std::vector<SegmentCut>& cuts
     stretch.t.push_back(cut.first.t + 0.5 * seconds);
     stretch.twist.push_back({.v = twist.x(), .vy = twist.y(), .omega = twist.z()});
     stretch.end = cut.second.t;
-    if (stretch.end - stretch.start >= kStretch) {
+    if (!later(kStretch, stretch.end - stretch.start)) {
       close(out);
     }
   }

@@ -55,7 +55,7 @@ struct ToStream {
 
   void command(const InputSample& sample) const { stream.push_command(sample); }
   void wheels(const InputSample& sample) const { stream.push_wheels(sample); }
-  void attitude(const Attitude& tilt) const { stream.push_attitude(tilt.t, tilt.roll, tilt.pitch); }
+  void attitude(const Attitude& tilt) const { stream.push_attitude({tilt.t, tilt.roll, tilt.pitch}); }
   void pose(const MeasuredPose& measured) const { stream.push_pose(measured); }
   void gyro(const YawRate& sample) const { stream.push_gyro(sample); }
 };
@@ -70,7 +70,7 @@ struct ToExpected {
     expected.push_back({sample.t, stream.commands().held_at(sample.t).value_or(BodyTwist{})});
   }
   void wheels(const InputSample& sample) const { stream.push_wheels(sample); }
-  void attitude(const Attitude& tilt) const { stream.push_attitude(tilt.t, tilt.roll, tilt.pitch); }
+  void attitude(const Attitude& tilt) const { stream.push_attitude({tilt.t, tilt.roll, tilt.pitch}); }
   void pose(const MeasuredPose& measured) const { stream.push_pose(measured); }
   void gyro(const YawRate& sample) const { stream.push_gyro(sample); }
 };

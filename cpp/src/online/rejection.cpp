@@ -27,6 +27,8 @@ constexpr std::array<Words, kReasons> kWords{{
      .text = "a position to which no chord leads: the robot hardly moved, or not as its inputs say"},
     {.name = "no-fix", .text = "the satellite receiver says that it has no position"},
     {.name = "poor-pose", .text = "between poses whose errors are far larger than those of the first source"},
+    {.name = "steep-attitude",
+     .text = "roll and pitch of a sensor that is not mounted level, or of no robot that drives"},
 }};
 
 const Words& words(Reason reason) { return kWords[static_cast<std::size_t>(reason)]; }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -25,8 +27,8 @@ std::optional<Reason> StampGate::check(double t, std::span<const double> numbers
   if (std::abs(t) > kLatestStamp) {
     return Reason::ImpossibleStamp;
   }
-  if (!(t > latest_)) {
-    return t == latest_ ? Reason::DuplicateStamp : Reason::BackwardStamp;
+  if (!later(t, latest_)) {
+    return same_stamp(t, latest_) ? Reason::DuplicateStamp : Reason::BackwardStamp;
   }
   latest_ = t;
   return std::nullopt;

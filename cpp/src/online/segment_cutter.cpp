@@ -8,15 +8,14 @@
 #include <utility>
 
 #include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kRecent = 64;       // intervals between poses that tell the median one
-SLIPWISE_TUNING(kLeastFraction, 0.25);    // of the length asked for; a frame shorter than this is no segment
-constexpr double kRounding = 1e-9;        // [s] of times
-constexpr double kStrideRounding = 1e-6;  // [s]
+constexpr std::size_t kRecent = 64;     // intervals between poses that tell the median one
+SLIPWISE_TUNING(kLeastFraction, 0.25);  // of the length asked for; a frame shorter than this is no segment
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -72,7 +71,7 @@ std::optional<TimedPose> PoseTimer::push(const MeasuredPose& pose, double late_f
   if (last_ && last_->frame == pose.frame) {
     const double before = interval_.median();
     const double interval = pose.t - last_->t;
-    late = before > 0.0 && interval > late_factor * before;
+    late = before > 0.0 && later(interval, late_factor * before);
     interval_.add(interval);
     timed.pose.yaw = last_->yaw + wrap_angle(pose.yaw - last_->yaw);
     gap_ = std::max(gap_, interval);
@@ -107,7 +106,7 @@ std::vector<SegmentCut> SegmentCutter::push(const TimedPose& pose, const InputBu
   }
   if (unknown_since_) {
     const auto again = inputs.first_after(*unknown_since_);
-    if (!again || *again > pose.pose.t) {
+    if (!again || later(*again, pose.pose.t)) {
       poses_.assign(1, pose);  // a frame goes on, yet no segment can start here
       return out;
     }
@@ -129,7 +128,7 @@ void SegmentCutter::end_frame(const InputBuffer& inputs, std::vector<SegmentCut>
   double length = length_;
   if (!poses_.empty() && !any_ && whole_frames_) {
     const double whole = poses_.back().pose.t - poses_.front().pose.t;
-    length = kLeastFraction * length <= whole && whole < length ? whole : length;
+    length = !later(kLeastFraction * length, whole) && whole < length ? whole : length;
   }
   if (!unknown_since_) {
     cut(length, true, inputs, out);
@@ -141,7 +140,8 @@ void SegmentCutter::end_frame(const InputBuffer& inputs, std::vector<SegmentCut>
 
 /// Where `last`, no pose follows; otherwise a segment is cut once there is a pose that is late enough to end it.
 void SegmentCutter::cut(double length, bool last, const InputBuffer& inputs, std::vector<SegmentCut>& out) {
-  while (poses_.size() > 1 && !unknown_since_ && (last || poses_.back().pose.t >= poses_.front().pose.t + length)) {
+  while (poses_.size() > 1 && !unknown_since_ &&
+         (last || !later(poses_.front().pose.t + length, poses_.back().pose.t))) {
     const TimedPose& start = poses_.front();
     const double interval = start.interval > 0.0 ? start.interval : poses_[1].interval;
     const double tolerance = std::max(0.5 * interval, rules_.length_tolerance * length);
@@ -158,21 +158,26 @@ void SegmentCutter::cut(double length, bool last, const InputBuffer& inputs, std
   }
 }
 
-/// The pose nearest to the time wanted, where one is within the tolerance.
+std::size_t SegmentCutter::first_from(double t) const {
+  const auto stamp = [](const TimedPose& timed) { return timed.pose.t; };
+  return static_cast<std::size_t>(std::ranges::lower_bound(poses_, t - kSameStamp, {}, stamp) - poses_.begin());
+}
+
+/// The pose nearest to the time wanted, of two that are as near the earlier, where one is within the tolerance.
 std::optional<std::size_t> SegmentCutter::nearest(double wanted, double tolerance, bool last) const {
   const auto stamp = [](const TimedPose& timed) { return timed.pose.t; };
-  const auto right = static_cast<std::size_t>(std::ranges::lower_bound(poses_, wanted, {}, stamp) - poses_.begin());
+  const std::size_t right = first_from(wanted);
   if (right == poses_.size() && !last) {
     return std::nullopt;
   }
   std::optional<std::size_t> best;
   for (const std::size_t i : {right - 1, right}) {
     const bool there = i < poses_.size();  // false for what wrapped round below 0
-    if (there && (!best || std::abs(stamp(poses_[i]) - wanted) < std::abs(stamp(poses_[*best]) - wanted))) {
+    if (there && (!best || later(std::abs(stamp(poses_[*best]) - wanted), std::abs(stamp(poses_[i]) - wanted)))) {
       best = i;
     }
   }
-  return best && std::abs(stamp(poses_[*best]) - wanted) <= tolerance + kRounding ? best : std::nullopt;
+  return best && !later(std::abs(stamp(poses_[*best]) - wanted), tolerance) ? best : std::nullopt;
 }
 
 /// Why the first pose and this one make no segment, if they do not.
@@ -195,17 +200,13 @@ std::optional<Reason> SegmentCutter::problem(std::size_t end, const InputBuffer&
 
 /// How many poses come before the next segment's start.
 std::size_t SegmentCutter::next_start(std::size_t end, std::optional<Reason> problem, const InputBuffer& inputs) {
-  const auto first_from = [&](double t) {
-    const auto stamp = [](const TimedPose& timed) { return timed.pose.t; };
-    return static_cast<std::size_t>(std::ranges::lower_bound(poses_, t, {}, stamp) - poses_.begin());
-  };
   if (problem == Reason::UnknownInput) {
     const double since =
         inputs.empty()
             ? poses_.front().pose.t
             : inputs.unknown_since(poses_.front().pose.t, poses_[end].pose.t).value_or(poses_.front().pose.t);
     const auto again = inputs.first_after(since);
-    if (!again || *again > poses_.back().pose.t) {
+    if (!again || later(*again, poses_.back().pose.t)) {
       unknown_since_ = since;
       return poses_.size() - 1;  // the last is kept: its frame goes on
     }
@@ -214,7 +215,7 @@ std::size_t SegmentCutter::next_start(std::size_t end, std::optional<Reason> pro
   if (problem == Reason::AmbiguousHeading) {
     return 1;
   }
-  return stride_ ? std::max<std::size_t>(1, first_from(poses_.front().pose.t + *stride_ - kStrideRounding)) : end;
+  return stride_ ? std::max<std::size_t>(1, first_from(poses_.front().pose.t + *stride_)) : end;
 }
 
 }  // namespace slipwise

@@ -11,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/segment/course.hpp"
@@ -89,7 +90,7 @@ void SegmentStream::end_run() {
 
 /// Whether a measurement may be used; says why not.
 bool SegmentStream::arrives(Stream stream, double t, std::span<const double> numbers) {
-  const bool too_late = std::isfinite(t) && t < newest_ - settings_.latency;
+  const bool too_late = std::isfinite(t) && later(newest_ - settings_.latency, t);
   if (const auto wrong = stamps_[index(stream)].check(t, numbers)) {
     reject(stream, *wrong, t);
     return false;
@@ -146,11 +147,18 @@ void SegmentStream::push_wheels(const InputSample& sample) {
   advance(newest_ - settings_.latency);
 }
 
-void SegmentStream::push_attitude(double t, double roll, double pitch) {
-  if (arrives(Stream::Attitude, t, std::array{roll, pitch})) {
-    tilts_.push({t, roll, pitch});
+std::optional<Tilt> SegmentStream::push_attitude(const Tilt& measured) {
+  std::optional<Tilt> tilt;
+  if (arrives(Stream::Attitude, measured.t, std::array{measured.roll, measured.pitch})) {
+    tilt = attitudes_.level(measured);
+    if (tilt) {
+      tilts_.push(*tilt);
+    } else {
+      reject(Stream::Attitude, Reason::SteepAttitude, measured.t);
+    }
   }
   advance(newest_ - settings_.latency);
+  return tilt;
 }
 
 void SegmentStream::push_gyro(const YawRate& sample) {
@@ -241,7 +249,7 @@ MeasuredPose SegmentStream::complete(const MeasuredPose& raw, PoseAccuracies& ac
 
 /// Wheel speeds tell where the robot can have come, where there are some by then.
 const InputBuffer& SegmentStream::gate_inputs(double t) const {
-  return !wheels_.empty() && wheels_.first() <= t ? wheels_ : commands_;
+  return !wheels_.empty() && !later(wheels_.first(), t) ? wheels_ : commands_;
 }
 
 void SegmentStream::reject_gated(const GatedPoses& gated) {

@@ -6,12 +6,16 @@
 #include <tuple>
 #include <utility>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
 
 constexpr double kTouching = 0.03;  // [s] neighbours may overlap by: clocks are not known any better
 
-bool overlap(const Segment& a, const Segment& b) { return a.start < b.end - kTouching && b.start < a.end - kTouching; }
+bool overlap(const Segment& a, const Segment& b) {
+  return later(b.end - kTouching, a.start) && later(a.end - kTouching, b.start);
+}
 
 }  // namespace
 
@@ -42,7 +46,7 @@ bool SourceMerge::beaten(const MergedSegment& segment) const {
 bool SourceMerge::decided(const MergedSegment& segment, double now) const {
   const double end = segment.driven.segment.end;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
-    const bool passed = std::max(seen_[i].start, now - longest_) >= end - kTouching;
+    const bool passed = !later(end - kTouching, std::max(seen_[i].start, now - longest_));
     const bool better = std::tuple(seen_[i].noise, i) < std::tuple(segment.noise, segment.source);
     if (i != segment.source && better && !passed) {
       return false;
@@ -53,7 +57,7 @@ bool SourceMerge::decided(const MergedSegment& segment, double now) const {
 
 std::vector<DrivenSegment> SourceMerge::take(double now) {
   std::vector<DrivenSegment> found;
-  const auto covered = [&](const MergedSegment& each) { return each.driven.segment.start < until_ - kTouching; };
+  const auto covered = [&](const MergedSegment& each) { return later(until_ - kTouching, each.driven.segment.start); };
   std::erase_if(waiting_, covered);
   auto next = waiting_.begin();
   while (next != waiting_.end()) {

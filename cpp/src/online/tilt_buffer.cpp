@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -14,14 +16,14 @@ constexpr double kApart = 0.02;  // [s]; a robot's tilt changes more slowly
 }  // namespace
 
 void TiltBuffer::push(const Tilt& tilt) {
-  if (tilts_.empty() || tilt.t - tilts_.back().t >= kApart) {
+  if (tilts_.empty() || !later(tilts_.back().t + kApart, tilt.t)) {
     tilts_.push_back(tilt);
   }
 }
 
 std::optional<Tilt> TiltBuffer::known_at(double t, double oldest) const {
-  const auto after = std::ranges::upper_bound(tilts_, t, {}, &Tilt::t);
-  if (after == tilts_.begin() || t - std::prev(after)->t > oldest) {
+  const auto after = std::ranges::upper_bound(tilts_, t + kSameStamp, {}, &Tilt::t);
+  if (after == tilts_.begin() || later(t, std::prev(after)->t + oldest)) {
     return std::nullopt;
   }
   return *std::prev(after);
@@ -31,7 +33,7 @@ std::shared_ptr<const Ground> TiltBuffer::along(double start, double end, double
   if (!known_at(start, oldest)) {
     return nullptr;
   }
-  const auto first = std::prev(std::ranges::upper_bound(tilts_, start, {}, &Tilt::t));
+  const auto first = std::prev(std::ranges::upper_bound(tilts_, start + kSameStamp, {}, &Tilt::t));
   auto last = std::ranges::lower_bound(tilts_, end, {}, &Tilt::t);
   last = last == tilts_.end() ? last : std::next(last);
   return std::make_shared<const Ground>(MeasuredTilts{{first, last}});

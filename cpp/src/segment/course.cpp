@@ -9,11 +9,11 @@
 
 #include "slipwise/lie/angle.hpp"
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kRounding = 1e-9;       // [s] of stamps
 constexpr double kShortestChord = 0.05;  // [m] a shorter one that a model predicts has no course to speak of
 
 Eigen::Vector2d chord(const CoursePositions& points, CoursePoint from, CoursePoint to) {
@@ -113,10 +113,10 @@ CoursePlaces cut_for_course(ActuatorSteps& drive, const Segment& segment) {
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     ActuatorStep step = drive.steps[k];
     ActuatorStepJacobian jacobian = drive.jacobians.empty() ? ActuatorStepJacobian::Zero() : drive.jacobians[k];
-    while (next != moments.end() && step.duration > 0.0 && next->first < cut.time() + step.duration - kRounding) {
+    while (next != moments.end() && step.duration > 0.0 && later(cut.time() + step.duration, next->first)) {
       const double moment = next->first - cut.time();
       if (next == moments.begin() || next->first > std::prev(next)->first) {
-        cut.add_until(std::abs(moment) < kRounding ? 0.0 : moment, step, jacobian);
+        cut.add_until(same_stamp(moment, 0.0) ? 0.0 : moment, step, jacobian);
       }
       place();
     }

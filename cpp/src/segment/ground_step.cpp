@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/segment/ground_along.hpp"
 
@@ -13,7 +14,6 @@ namespace {
 
 SLIPWISE_TUNING(kLongestPiece, 0.1);  // [s] over which the robot's tilt is one
 constexpr double kMostPieces = 1000.0;
-constexpr double kRounding = 1e-9;
 
 /// A robot's tilt as the cosine and sine of pitch and roll.
 template <class Scalar>
@@ -125,7 +125,7 @@ Eigen::Matrix3d GroundStepLinearization::above_by(const Eigen::Vector3d& tangent
 
 std::size_t ground_pieces(double duration) {
   return static_cast<std::size_t>(
-      std::min(std::max(1.0, std::ceil(duration / kLongestPiece - kRounding)), kMostPieces));
+      std::min(std::max(1.0, std::ceil((duration - kSameStamp) / kLongestPiece)), kMostPieces));
 }
 
 void cut_for_ground(ActuatorSteps& drive) {

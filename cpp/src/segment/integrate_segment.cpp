@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/segment/ground_step.hpp"
 #include "slipwise/segment/growing_path.hpp"
 #include "slipwise/segment/path_step.hpp"
@@ -17,7 +18,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kRounding = 1e-9;        // [s] of stamps
 constexpr Eigen::Index kClockOffset = 4;  // its place among the parameters of an actuator
 
 /// One column per learned parameter of the actuator.
@@ -363,10 +363,10 @@ std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
   double next = segment.start + part;
   std::vector<SegmentLinearization> found;
   const auto see = [&](const GrowingPath& path, std::span<const ActuatorStep> steps, const SensitivitySums& sums) {
-    if (path.time() < next - kRounding) {
+    if (later(next, path.time())) {
       return;
     }
-    while (next <= path.time() + kRounding) {
+    while (!later(next, path.time())) {
       next += part;
     }
     SegmentPath so_far = GrowingPath(path).finish({steps.begin(), steps.end()}, sensor);

@@ -10,12 +10,12 @@
 #include "slipwise/filter/prior.hpp"
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kSameStamp = 1e-6;  // [s] segments closer than this meet at one pose
-constexpr double kSettled = 1e-2;    // in standard deviations: a new linearisation that moves less is not needed
+constexpr double kSettled = 1e-2;  // in standard deviations: a new linearisation that moves less is not needed
 
 /// blkdiag(R, 1).
 Eigen::Matrix3d turned(double theta) {
@@ -171,7 +171,7 @@ void DelayedState::learn_weighted(const InputHistory& inputs, const Segment& seg
 }
 
 IekfUpdate DelayedState::learn(const InputHistory& inputs, const Segment& segment) {
-  if (!started_ || std::abs(segment.start - time_) > kSameStamp) {
+  if (!started_ || !same_stamp(segment.start, time_)) {
     start(segment.start, {});
   }
   time_ = segment.start;

@@ -106,6 +106,30 @@ TEST_CASE("numbers that cannot be are rejected, and learning goes on as if they 
   CHECK(count(Stream::Attitude, Reason::NotFinite) == run.poses.size());
 }
 
+TEST_CASE("the hour of the day changes nothing but the stamps") {
+  constexpr double kToday = 1.7e9;  // [s]
+  for (const bool from_commands : {false, true}) {
+    CAPTURE(from_commands);
+    const Recording run = streamed_robot(4, kSeconds);
+    Recording today = run;
+    const auto shift = [](auto& samples) { std::ranges::for_each(samples, [](auto& each) { each.t += kToday; }); };
+    shift(today.commands);
+    shift(today.wheels);
+    shift(today.attitudes);
+    shift(today.poses);
+    const LearnedModel one = learned(run, from_commands);
+    const LearnedModel other = learned(today, from_commands);
+    CHECK(one.segments == other.segments);
+    const Estimate& of_one = one.known.motion->estimate;
+    const Eigen::VectorXd moved = other.known.motion->estimate.mean - of_one.mean;
+    CHECK(moved.cwiseQuotient(of_one.covariance.diagonal().cwiseSqrt()).lpNorm<Eigen::Infinity>() < 1e-3);
+    for (std::size_t h = 0; h < one.held_out.size(); ++h) {
+      REQUIRE(one.held_out[h].size() == other.held_out[h].size());
+      CHECK(std::abs(other.held_out[h].back().end - one.held_out[h].back().end - kToday) < 1e-6);
+    }
+  }
+}
+
 TEST_CASE("being asked changes nothing") {
   const Recording run = streamed_robot(3, kSeconds);
   const LearnedModel expected = learned(run, true);

@@ -6,6 +6,7 @@ from __future__ import annotations
 from slipwise import _core
 from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import SettingsError
+from slipwise.logs.attitude import mounting_words
 from slipwise.logs.fixes import fix_number
 
 
@@ -123,6 +124,11 @@ class Measurements:
     def push_attitude(self, t: float, roll: float, pitch: float) -> None:
         """Take roll and pitch [rad] at a stamp [s]; by REP-103 nose down is positive pitch."""
         self._core.push_attitude(t, roll, pitch)
+
+    @property
+    def attitude_mounting(self) -> str:
+        """How the sensor of roll and pitch is mounted, where it is not level, and what is done about that."""
+        return mounting_words(self._core.attitude_mounting)
 
     def _source(self, name: str, fix: str) -> tuple[int, int]:
         """Return the numbers of a source and of a fix.

@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 INPUT_NAMES = ("command", "wheel")
-EPOCH_STAMPS = 1e8  # s; stamps beyond this count from 1970, smaller ones from some start of their own
+OVERLAP = 1.0  # s; runs of one clock overlap by less, where files were split while messages were on the way
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +87,7 @@ class WindowSet:
         for clock in np.unique(clocks).tolist():
             first, last = np.searchsorted(self._clock_of_each, (clock, clock + 1)).tolist()
             at = clocks == clock
-            counts[at] = first + np.searchsorted(self.end[first:last], time[at] + 1e-9, side="right")
+            counts[at] = first + np.searchsorted(self.end[first:last], time[at] + _core.SAME_STAMP, side="right")
         return counts
 
     def passed(self, pace: WindowSet) -> Ints:
@@ -102,7 +102,7 @@ class WindowSet:
     @cached_property
     def _clocks(self) -> Ints:
         """Number of each run's clock, [runs]."""
-        restarts = [earlier.end > later.begin for earlier, later in itertools.pairwise(self.drive)]
+        restarts = [earlier.end > later.begin + _core.SAME_STAMP for earlier, later in itertools.pairwise(self.drive)]
         return np.cumsum([0, *restarts], dtype=np.int64)
 
 
@@ -132,10 +132,13 @@ def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
 
 
 def _in_time(drive: list[PreparedRun]) -> list[PreparedRun]:
-    """Order runs by their start where all stamps are times of day: files may come in any order."""
-    if all(run.begin > EPOCH_STAMPS for run in drive):
-        return sorted(drive, key=lambda run: run.begin)
-    return drive
+    """Order runs by their start where they are on one clock: files may come in any order.
+
+    Runs that overlap count their time from a start of their own each, and stay in the order given.
+    """
+    ordered = sorted(drive, key=lambda run: run.begin)
+    overlap = any(later.begin < earlier.end - OVERLAP for earlier, later in itertools.pairwise(ordered))
+    return drive if overlap else ordered
 
 
 def choose_input(log: Log) -> str:

@@ -8,12 +8,13 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from slipwise.calibration.prepared_run import EPOCH_STAMPS, PreparedRun
+from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Run
 from slipwise.models.schema import LONGEST_NAME
 
 COLUMN = "terrain"  # of a tidy log
+_EPOCH = 1e8  # s; stamps beyond this count from 1970, smaller ones from some start of their own
 
 
 def labels_of(run: Run) -> tuple[tuple[float, str], ...]:
@@ -38,7 +39,7 @@ def label_at_start(cues: Sequence[tuple[float, str]], run: Run) -> str:
 def date_of(drive: Sequence[PreparedRun]) -> str:
     """Return the day (UTC) on which the drive began; nothing where stamps do not count from 1970."""
     start = drive[0].run.span[0]
-    return datetime.fromtimestamp(start, UTC).date().isoformat() if start > EPOCH_STAMPS else ""
+    return datetime.fromtimestamp(start, UTC).date().isoformat() if start > _EPOCH else ""
 
 
 def given_labels(labels: Sequence[str], logs: int) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise import _core
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.statistics import held_out_half
@@ -22,7 +23,6 @@ from slipwise.student import LEAST_DOF, MOST_DOF
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SAME_STAMP = 1e-6  # s; a stamp in a file may be rounded to this
 TEXT = ("run", "method")
 POSE = ("dx", "dy", "dyaw")
 COVARIANCE = tuple(name for name in COLUMNS if name.startswith("cov_"))
@@ -101,7 +101,7 @@ def predictions_on(rows: PredictionRows, targets: WindowSet, runs: Sequence[str]
     Raises:
         LogError: a row is of no window, a window is there twice, or one that is scored is missing.
     """
-    at = np.flatnonzero(np.isclose(rows.numbers["horizon"], targets.length, rtol=0.0, atol=SAME_STAMP))
+    at = np.flatnonzero(np.isclose(rows.numbers["horizon"], targets.length, rtol=0.0, atol=_core.SAME_STAMP))
     window = _windows_of(rows, at, targets, runs)
     index = np.array([drive.index for drive in targets.drive], dtype=np.int64)[targets.position]
     methods = np.array(rows.method, dtype=object)
@@ -174,8 +174,8 @@ def _windows_of(rows: PredictionRows, at: Ints, targets: WindowSet, runs: Sequen
             continue
         start = rows.numbers["t_start"][at[mine]]
         nearest = own[_nearest(targets.start[own], start)]
-        fits = np.abs(targets.start[nearest] - start) <= SAME_STAMP
-        fits &= np.abs(targets.end[nearest] - rows.numbers["t_end"][at[mine]]) <= SAME_STAMP
+        fits = np.abs(targets.start[nearest] - start) <= _core.SAME_STAMP
+        fits &= np.abs(targets.end[nearest] - rows.numbers["t_end"][at[mine]]) <= _core.SAME_STAMP
         found[mine[fits]] = nearest[fits]
     if (found < 0).any():
         row = int(at[np.argmax(found < 0)])

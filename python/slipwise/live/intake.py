@@ -39,6 +39,7 @@ class Intake:
         self.newest_input: Twist | None = None
         self.newest_pose: Pose | None = None
         self.why_not = ""  # nothing is learned now
+        self._mounting = ""  # of the sensor of roll and pitch, as it was said
 
     @property
     def newest(self) -> float:
@@ -118,8 +119,16 @@ class Intake:
             self._said.count(f"poses not learned from: {self.why_not}")
         if pose.roll is not None and pose.pitch is not None:
             self._learner.push_attitude(pose.t, pose.roll, pose.pitch)
+            self._say_mounting(pose.t)
         number = self._frames.setdefault(pose.frame, len(self._frames))
         self._learn(pose, number, learned=learned)
+
+    def _say_mounting(self, t: float) -> None:
+        """Say how the sensor of roll and pitch is mounted, where that is another than was said."""
+        words = self._learner.attitude_mounting
+        if words != self._mounting:
+            self._said.note(t, words or "roll and pitch are those of a level sensor")
+            self._mounting = words
 
     def _push_other(self, pose: Pose) -> None:
         """A further source: where the gates are closed nothing is learned from it either."""

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from slipwise.logs.log import ABSURD
 from slipwise.logs.rotation import NORM_TOLERANCE
 
 
@@ -30,7 +31,7 @@ def rotation_of(x: float, y: float, z: float, w: float) -> tuple[float, float, f
 
 
 def deviation(*variances: float) -> float | None:
-    """Return the standard deviation of variances; None unless all are positive and finite."""
-    if not all(math.isfinite(variance) and variance > 0.0 for variance in variances):
+    """Return the standard deviation of variances; None unless all are positive and can be."""
+    if not all(0.0 < variance < ABSURD for variance in variances):  # false for NaN
         return None
     return math.sqrt(sum(variances) / len(variances))

@@ -13,7 +13,7 @@ from slipwise.logs.header_clock import BagClocks
 from slipwise.logs.joints import speeds_from_angles
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
+from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
 from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples, select
 from slipwise.logs.navsat import course_of_path, east_north_up, heading_from_imu, tilt_from_imu
 from slipwise.logs.odometry_twist import always_zero, poses_move, twist_zero_words, twists_between
@@ -278,9 +278,9 @@ def gyro_stream(context: BagContext, samples: Samples) -> RawStream:
 
 
 def deviation_of(variances: Floats) -> Floats:
-    """Return the standard deviation [N] of variances [N, K], NaN unless all are positive and finite."""
-    known = (np.isfinite(variances) & (variances > 0.0)).all(axis=1)
-    return np.sqrt(np.where(known, np.nan_to_num(variances).mean(axis=1).clip(0.0), np.nan))
+    """Return the standard deviation [N] of variances [N, K], NaN unless all are positive and can be."""
+    known = (variances > 0.0) & (variances < ABSURD)  # false for NaN
+    return np.asarray(np.sqrt(np.where(known, variances, np.nan).mean(axis=1)))
 
 
 def _count(context: BagContext, samples: Samples, wrong: Bools, kind: str, reason: str) -> None:

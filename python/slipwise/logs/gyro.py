@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from slipwise import _core
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.held import UNKNOWN_AFTER, HeldSum
 from slipwise.logs.log import Floats, Run
@@ -75,12 +76,12 @@ def _turns_otherwise(run: Run, rows: Floats) -> bool:
     inputs = run.wheels if run.wheels is not None else run.commands
     if inputs is None or len(rows) < 2:
         return False
-    start = np.arange(rows[0, 0], rows[-1, 0] - _WINDOW, _WINDOW)
+    start = np.arange(rows[0, 0], rows[-1, 0] - _WINDOW - _core.SAME_STAMP, _WINDOW)
     turned = HeldSum.of(inputs, inputs.omega, UNKNOWN_AFTER)
     by_inputs, known = turned.between(start, start + _WINDOW), turned.known(start, start + _WINDOW)
     steps = np.concatenate(([0.0], np.cumsum(0.5 * np.diff(rows[:, 0]) * (rows[1:, 1] + rows[:-1, 1]))))
     by_gyro = np.interp(start + _WINDOW, rows[:, 0], steps) - np.interp(start, rows[:, 0], steps)
-    turning = (np.abs(by_inputs) > _TURNING * _WINDOW) & (known > 0.9 * _WINDOW)
+    turning = (np.abs(by_inputs) > _TURNING * _WINDOW) & (known > 0.9 * _WINDOW + _core.SAME_STAMP)
     if turning.sum() < _ENOUGH:
         return False
     ratio = float(by_inputs[turning] @ by_gyro[turning] / (by_inputs[turning] @ by_inputs[turning]))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from slipwise import _core
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Floats, Inputs, Poses
 
@@ -59,15 +60,15 @@ def wrapped(angle: Floats, turn: float = 2.0 * np.pi) -> Floats:
 def _windows(number: int, inputs: Inputs, poses: Poses, unknown_after: float) -> MotionWindows:
     new_frame = np.flatnonzero(np.diff(poses.frame, prepend=-1))
     start_time = poses.t[new_frame][np.searchsorted(new_frame, np.arange(len(poses)), side="right") - 1]
-    slot = np.floor((poses.t - start_time) / _LENGTH)
+    slot = np.floor((poses.t - start_time + _core.SAME_STAMP) / _LENGTH)
     first = np.flatnonzero((np.diff(slot, prepend=-1.0) != 0.0) | (np.diff(poses.frame, prepend=-1) != 0))
     i, j = first[:-1], first[1:]
     duration = poses.t[j] - poses.t[i]
     v, vy, omega = (
         HeldSum.of(inputs, values, unknown_after) for values in (inputs.v, inputs.vy, inputs.omega)
     )
-    good = (poses.frame[i] == poses.frame[j]) & (duration < _LONGEST)
-    good &= v.known(poses.t[i], poses.t[j]) > _KNOWN_PART * duration
+    good = (poses.frame[i] == poses.frame[j]) & (duration < _LONGEST - _core.SAME_STAMP)
+    good &= v.known(poses.t[i], poses.t[j]) > _KNOWN_PART * duration + _core.SAME_STAMP
     i, j = i[good], j[good]
     step = np.diff(poses.yaw, prepend=poses.yaw[:1])
     followed, followed_degrees = np.cumsum(wrapped(step)), np.cumsum(wrapped(step, 360.0))

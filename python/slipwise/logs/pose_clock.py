@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from slipwise import _core
 from slipwise.errors import LogError
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Floats, Inputs
@@ -52,11 +53,11 @@ class PoseMotion:
 
 def pose_motion(t: Floats, x: Floats, y: Floats, yaw: Floats) -> PoseMotion:
     """Return the motion between poses [M] that are 0.3 s apart or more; their stamps must increase."""
-    slot = np.floor((t - t[:1]) / _LEAST_STEP)
+    slot = np.floor((t - t[:1] + _core.SAME_STAMP) / _LEAST_STEP)
     kept = np.flatnonzero(np.diff(slot, prepend=-1.0) > 0.0)
     i, j = kept[:-1], kept[1:]
     step = t[j] - t[i]
-    near = (step > 0.5 * _LEAST_STEP) & (step < _LONGEST_STEP)
+    near = (step > 0.5 * _LEAST_STEP + _core.SAME_STAMP) & (step < _LONGEST_STEP - _core.SAME_STAMP)
     i, j, step = i[near], j[near], step[near]
     speed = np.hypot(x[j] - x[i], y[j] - y[i]) / step
     return PoseMotion(t[i], t[j], _clipped(speed), _clipped(wrapped(yaw[j] - yaw[i]) / step))
@@ -216,7 +217,7 @@ def _input_means(drive: Sequence[_Driven], start: Floats, stop: Floats) -> tuple
     """Return the mean speed and yaw rate of the drive [N] between stamps [N], NaN where it is unknown."""
     speed, rate = np.full(len(start), np.nan), np.full(len(start), np.nan)
     for part in drive:
-        known = part.given.known(start, stop) > _KNOWN * (stop - start)
+        known = part.given.known(start, stop) > _KNOWN * (stop - start) + _core.SAME_STAMP
         for sums, out in ((part.speed, speed), (part.rate, rate)):
             out[known] = sums.between(start[known], stop[known]) / (stop - start)[known]
     return speed, rate

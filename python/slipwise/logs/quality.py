@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.attitude import levelled
 from slipwise.logs.course_heading import as_positions, is_course
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
@@ -23,12 +24,17 @@ _FEW = 20  # steps; with fewer no such judgement is made
 
 
 def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
-    """Return the log without pose jumps; an input is unknown once it is older than `unknown_after` [s].
+    """Return the log without pose jumps and with the attitude of the robot.
+
+    Args:
+        log: as it was read.
+        unknown_after: an input is unknown once it is older than this [s].
 
     Raises:
-        LogError: poses and inputs contradict each other.
+        LogError: poses and inputs contradict each other, or units are wrong.
     """
     where = log.sources[0].path if log.sources else ""
+    log = levelled(log)
     _check_forward(log, where)
     _check_seconds(log, where)
     for name in ("commands", "wheels"):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from slipwise import _core
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.dead_reckoning import dead_reckoned
 from slipwise.logs.log import Floats, Inputs, Poses
@@ -85,10 +86,10 @@ class _Run:
     def of(cls, wheels: Inputs, poses: Poses) -> _Run | None:
         if len(wheels) < 3 or len(poses) < 3:
             return None
-        last = np.searchsorted(poses.t, poses.t + _LENGTH)
+        last = np.searchsorted(poses.t, poses.t + _LENGTH - _core.SAME_STAMP)
         first = np.flatnonzero(last < len(poses))
         last = last[first]
-        whole = (poses.frame[first] == poses.frame[last]) & (poses.t[last] - poses.t[first] < _LONGEST)
+        whole = (poses.frame[first] == poses.frame[last]) & (poses.t[last] - poses.t[first] < _LONGEST - _core.SAME_STAMP)
         spread = slice(None, None, max(1, int(whole.sum()) // _MOST_WINDOWS))
         path = dead_reckoned(wheels)
         return cls(path, np.unwrap(path.yaw), poses, first[whole][spread], last[whole][spread])

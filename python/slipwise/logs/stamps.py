@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from slipwise import _core
 from slipwise.logs.log import Bools, Floats
 
 LATEST = float(2**32)  # s; what is later, in the year 2106, is no time in seconds
@@ -16,7 +17,8 @@ def forward_stamps(t: Floats) -> tuple[Bools, Bools, Bools]:
     """Sort the samples of a stream by what their stamps do.
 
     A lone stamp far in the future would turn everything after it into the past, so such a spike, at the start
-    too, is taken out first; of the rest a sample is kept if it is later than all samples before it.
+    too, is taken out first; of the rest a sample is kept if it is later than all samples before it, by more
+    than rounding.
 
     Args:
         t: stamps [N] in s, all finite, as they came.
@@ -25,14 +27,14 @@ def forward_stamps(t: Floats) -> tuple[Bools, Bools, Bools]:
         (keep, duplicate, backward), each [N]; every sample is in exactly one of them.
     """
     step = np.diff(t)
-    if (step > 0).all():
+    if (step > _core.SAME_STAMP).all():
         none = np.zeros(len(t), bool)
         return ~none, none, none.copy()
     spike = lone_spikes(t)
     steady = np.where(spike, -np.inf, t)
     latest = np.concatenate([[-np.inf], np.maximum.accumulate(steady)[:-1]])
-    keep = ~spike & (t > latest)
-    duplicate = ~spike & (t == latest)
+    keep = ~spike & (t > latest + _core.SAME_STAMP)
+    duplicate = ~spike & ~keep & (t >= latest - _core.SAME_STAMP)
     return keep, duplicate, ~keep & ~duplicate
 
 

@@ -16,7 +16,6 @@ from slipwise.reporting.chosen_windows import ChosenWindow
 from slipwise.reporting.contents import Contents
 from slipwise.segments import WindowRules, cut_windows
 
-_SAME_STAMP = 1e-6  # s
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +81,7 @@ def _sensor_path(
 
 def _measured(poses: Poses, window: ChosenWindow) -> Floats | None:
     """Return the measured poses seen from the first of the window, None without two in one frame."""
-    inside = (poses.t >= window.t_start - _SAME_STAMP) & (poses.t <= window.t_end + _SAME_STAMP)
+    inside = (poses.t >= window.t_start - _core.SAME_STAMP) & (poses.t <= window.t_end + _core.SAME_STAMP)
     rows = np.flatnonzero(inside)
     if len(rows) < 2 or poses.frame[rows[0]] != poses.frame[rows[-1]]:
         return None
@@ -127,7 +126,7 @@ def _known_parameters(contents: Contents, window: ChosenWindow) -> Floats | None
     history, model = contents.calibration.history, contents.calibration.model
     if history is None or list(history.names) != [parameter.name for parameter in model.content.parameters]:
         return None
-    until = window.t_start - (contents.longest_horizon or 0.0) + _SAME_STAMP
+    until = window.t_start - (contents.longest_horizon or 0.0) + _core.SAME_STAMP
     learned = np.flatnonzero(
         (history.run < window.run) | ((history.run == window.run) & (history.t <= until))
     )

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 
 /// The lag's output after a step and its integral over the step.
@@ -44,8 +46,7 @@ struct LagDecay {
 /// Into how many equal parts a stretch is cut, so that a lagging speed is averaged over no more than `longest`. A
 /// stretch that is longer than whole parts by no more than rounding gets no other part.
 inline int lag_parts(double duration, double longest) {
-  constexpr double kRounding = 1e-6;  // of a part
-  return std::max(1, static_cast<int>(std::ceil(duration / longest - kRounding)));
+  return std::max(1, static_cast<int>(std::ceil((duration - kSameStamp) / longest)));
 }
 
 /// V' = (input - V) / time_constant, with V = `output` at the start.

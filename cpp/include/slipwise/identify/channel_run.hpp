@@ -38,8 +38,6 @@ struct ChannelModel {
   }
 };
 
-inline constexpr double kSameStamp = 1e-6;  ///< [s] windows closer than this meet
-
 /// -2 log density under a Student t of `count` values, without constants.
 double student_cost(double nis, double log_determinant, Eigen::Index count);
 

@@ -54,7 +54,7 @@ class GyroBuffer {
   std::deque<YawRate> samples_;
   double bias_ = 0.0;                   ///< [rad/s]
   double variance_ = 4e-4;              ///< of the bias
-  double seen_until_ = 0.0;             ///< inputs were looked at until then [s]
+  std::optional<double> seen_until_;    ///< inputs were looked at until then [s]
   std::optional<MeasuredPose> course_;  ///< since which the course's turn is compared
 };
 

@@ -6,7 +6,6 @@
 
 namespace slipwise {
 
-inline constexpr double kRounding = 1e-9;   ///< [s] of stamps
 inline constexpr double kReady = 1.0;       ///< [s] after which a segment has been learned, whatever the latency
 inline constexpr double kLookBack = 20.0;   ///< [s] of inputs before a segment; an actuator remembers no more
 inline constexpr double kWheelsBack = 3.0;  ///< [s] of wheel speeds before a segment; no clock offset is larger

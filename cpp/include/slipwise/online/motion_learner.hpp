@@ -20,6 +20,7 @@
 #include "slipwise/online/motion_monitor.hpp"
 #include "slipwise/online/pose_filter.hpp"
 #include "slipwise/online/recent_slip.hpp"
+#include "slipwise/online/run_clock.hpp"
 #include "slipwise/online/segment_stream.hpp"
 #include "slipwise/online/student_calibration.hpp"
 
@@ -113,7 +114,7 @@ class MotionLearner {
   void push_wheels(double t, const BodyTwist& twist);
   /// A pose, or a position alone, whose heading is taken from the course of its path; odometry needs poses.
   /// A pose that is not `learned` from serves odometry and the monitor alone; no segment lies across it.
-  void push_pose(const MeasuredPose& pose, bool learned = true);
+  void push_pose(const MeasuredPose& measured, bool learned = true);
   /// Yaw rate of a gyro [rad/s], counter-clockwise; turns between positions are taken from it, its bias is learned.
   void push_gyro(double t, double rate);
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
@@ -178,6 +179,8 @@ class MotionLearner {
 
   /// What is known of the sources of poses, where there are several.
   const KnownSources& sources() const { return sources_; }
+  /// How the sensor of roll and pitch sits on the robot.
+  AttitudeMounting attitude_mounting() const { return stream_.attitudes().mounting(); }
   /// Learned factor of the noise variances of (x, y, theta), of the poses of the first.
   Eigen::Vector3d noise_scale() const { return known_.back().slip->noise_scale; }
   /// Bias of the gyro [rad/s], and its standard deviation.
@@ -189,7 +192,7 @@ class MotionLearner {
   static MotionLearner load(std::string_view saved);
 
   /// Stamp of the newest measurement of the run [s]; minus infinity before the first.
-  double newest() const { return stream_.newest(); }
+  double newest() const { return clock_.stamp(stream_.newest()); }
 
   /// Names what is saved. Where slip is now is found again from the rest.
   template <class Self, class Archive>
@@ -198,7 +201,7 @@ class MotionLearner {
     a(self.recent_, self.wheel_segments_, self.twist_segments_, self.command_segments_, self.errors_, self.held_out_,
       self.events_);
     a(self.dropped_events_, self.rejected_, self.runs_, self.run_begins_, self.before_run_, self.steepest_);
-    a(self.seconds_, self.surface_events_, self.sources_);
+    a(self.seconds_, self.surface_events_, self.sources_, self.clock_);
   }
 
  private:
@@ -224,12 +227,13 @@ class MotionLearner {
   MotionLeg leg(const LegKnowledge& known, double start, double end) const;
   Eigen::Matrix3d unknown_motion(double start, double end) const;
   void say(LearnerEvent event);
-  void see_stamp(double t);
+  double counted(double stamp);
   void consider_surfaces(double t);
   void note_surfaces(std::size_t run, double t);
   void check_loaded() const;
 
   LearnerSettings settings_;
+  RunClock clock_;  ///< by which all stamps below are counted, but for those of events and held-out predictions
   SegmentStream stream_;
   MotionHypotheses hypotheses_;
   DisturbanceFilter disturbance_;

@@ -30,9 +30,10 @@ enum class Reason : std::uint8_t {
   AmbiguousHeading,
   NoCourse,
   NoFix,
-  PoorPose
+  PoorPose,
+  SteepAttitude
 };
-inline constexpr std::size_t kReasons = 15;
+inline constexpr std::size_t kReasons = 16;
 constexpr std::size_t enumerators(Reason /*type*/) { return kReasons; }
 
 /// A short stable name, such as "duplicate-stamp".

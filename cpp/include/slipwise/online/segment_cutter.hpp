@@ -111,6 +111,8 @@ class SegmentCutter {
 
  private:
   void cut(double length, bool last, const InputBuffer& inputs, std::vector<SegmentCut>& out);
+  /// The index of the first pose at `t` [s] or later.
+  std::size_t first_from(double t) const;
   std::optional<std::size_t> nearest(double wanted, double tolerance, bool last) const;
   std::optional<Reason> problem(std::size_t end, const InputBuffer& inputs) const;
   std::size_t next_start(std::size_t end, std::optional<Reason> problem, const InputBuffer& inputs);

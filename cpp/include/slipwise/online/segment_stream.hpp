@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "slipwise/hypotheses/cascaded_model.hpp"
+#include "slipwise/online/attitude_gate.hpp"
 #include "slipwise/online/body_rates.hpp"
 #include "slipwise/online/car_stream.hpp"
 #include "slipwise/online/chord_finder.hpp"
 #include "slipwise/online/gyro_buffer.hpp"
-#include "slipwise/online/held_inputs.hpp"
+#include "slipwise/online/hold_times.hpp"
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
@@ -92,8 +93,8 @@ class SegmentStream {
   void end_run();
   void push_command(const InputSample& sample);
   void push_wheels(const InputSample& sample);
-  /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
-  void push_attitude(double t, double roll, double pitch);
+  /// Roll and pitch [rad]; by REP-103 nose down is positive pitch. Returns those of the robot, where they may be used.
+  std::optional<Tilt> push_attitude(const Tilt& measured);
   /// Yaw rate [rad/s] of a gyro, from which turns between positions are taken; poses tell theirs themselves.
   void push_gyro(const YawRate& sample);
   /// Whether it may be used; otherwise it is rejected.
@@ -108,6 +109,7 @@ class SegmentStream {
   double newest() const { return newest_; }
   const InputBuffer& commands() const { return commands_; }
   const GyroBuffer& gyro() const { return gyro_; }
+  const AttitudeGate& attitudes() const { return attitudes_; }
   const InputBuffer& wheels() const { return wheels_; }
   const StreamSettings& settings() const { return settings_; }
   bool wheels_known() const { return wheels_ever_; }
@@ -143,7 +145,8 @@ class SegmentStream {
       self.wheel_timer_, self.learned_, self.slip_);
     a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
       self.learned_last_);
-    a(self.chords_, self.position_last_, self.gyro_, self.heading_, self.others_, self.turned_until_, self.turned_);
+    a(self.chords_, self.position_last_, self.gyro_, self.heading_, self.others_, self.turned_until_, self.turned_,
+      self.attitudes_);
   }
 
  private:
@@ -194,8 +197,9 @@ class SegmentStream {
   InputBuffer wheels_;
   bool wheels_ever_ = false;
   std::array<double, 4> range_;
+  AttitudeGate attitudes_;
   BodyRates rates_;
-  HeldInputs held_;
+  HoldTimes held_;
   TiltBuffer tilts_;
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <variant>
 
+#include "slipwise/lie/angle.hpp"
 #include "slipwise/linear/dual_number.hpp"
 #include "slipwise/segment/ground.hpp"
 
@@ -47,7 +48,8 @@ RiseAlong<Scalar> rise_along(const Ground& ground, const std::array<Scalar, 3>& 
   return {rise.x * ch + rise.y * sh, rise.y * ch - rise.x * sh, x_ahead * ch + y_ahead * sh, x_left * ch + y_left * sh};
 }
 
-/// Roll and pitch at a stamp [rad]; level where nothing was measured.
+/// Roll and pitch at a stamp [rad], along the shorter way from one attitude to the next; level where nothing was
+/// measured.
 template <class Scalar>
 std::array<Scalar, 2> roll_and_pitch(const MeasuredTilts& measured, const Scalar& t) {
   const auto after = std::ranges::upper_bound(measured.at, value_of(t), {}, &Tilt::t);
@@ -60,8 +62,8 @@ std::array<Scalar, 2> roll_and_pitch(const MeasuredTilts& measured, const Scalar
   }
   const Tilt& before = *std::prev(after);
   const Scalar part = (t - Scalar(before.t)) / Scalar(after->t - before.t);
-  return {Scalar(before.roll) + part * Scalar(after->roll - before.roll),
-          Scalar(before.pitch) + part * Scalar(after->pitch - before.pitch)};
+  return {Scalar(before.roll) + part * Scalar(wrap_angle(after->roll - before.roll)),
+          Scalar(before.pitch) + part * Scalar(wrap_angle(after->pitch - before.pitch))};
 }
 
 }  // namespace slipwise

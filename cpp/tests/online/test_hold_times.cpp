@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "slipwise/online/held_inputs.hpp"
+#include "slipwise/online/hold_times.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 using namespace slipwise;
 
 TEST_CASE("steps are held for their length, zero and what comes after a gap is not") {
-  HeldInputs held(0.5);
+  HoldTimes held(0.5);
   for (int i = 0; i < 6000; ++i) {
     const double t = 0.05 * i;
     const bool drives = static_cast<int>(t) % 5 < 2;  // 2 s of each 5 s
@@ -25,7 +25,7 @@ TEST_CASE("steps are held for their length, zero and what comes after a gap is n
 }
 
 TEST_CASE("a robot that was never commanded has no held input") {
-  HeldInputs held(0.5);
+  HoldTimes held(0.5);
   held.push({0.0, {}});
   held.push({10.0, {}});
   held.restart();

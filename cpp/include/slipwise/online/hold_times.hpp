@@ -12,10 +12,10 @@ namespace slipwise {
 
 /// Takes the inputs of one run after another, and remembers in constant memory. An input is held while it stays within
 /// a fifth of the fastest so far of where it was; zero tells nothing, for a dead band holds a robot there, too.
-class HeldInputs {
+class HoldTimes {
  public:
   /// `unknown_after`: an input is unknown once it is older than this [s].
-  explicit HeldInputs(double unknown_after) : unknown_after_(unknown_after) {}
+  explicit HoldTimes(double unknown_after) : unknown_after_(unknown_after) {}
 
   /// Takes an input, whose stamp is later than those before.
   void push(const InputSample& sample);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long each input was held, weighted by that time.
-#include "slipwise/online/held_inputs.hpp"
+#include "slipwise/online/hold_times.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
@@ -14,23 +16,23 @@ constexpr double kFraction = 0.9;  // of the driving time
 
 }  // namespace
 
-void HeldInputs::Axis::end(double t) {
+void HoldTimes::Axis::end(double t) {
   if (std::abs(value) > kSame * fastest && t > since) {
     held.add(t - since, t - since);
   }
   value = 0.0;
 }
 
-void HeldInputs::Axis::take(double input, double t, double ended) {
+void HoldTimes::Axis::take(double input, double t, double ended) {
   fastest = std::max(fastest, std::abs(input));
-  if (ended < t || std::abs(input - value) > kSame * fastest) {
+  if (later(t, ended) || std::abs(input - value) > kSame * fastest) {
     end(ended);
     value = input;
     since = t;
   }
 }
 
-void HeldInputs::push(const InputSample& sample) {
+void HoldTimes::push(const InputSample& sample) {
   const double t = sample.t;
   const double ended = last_ ? std::min(t, *last_ + unknown_after_) : t;
   const std::array values{sample.twist.v, sample.twist.omega};
@@ -40,14 +42,14 @@ void HeldInputs::push(const InputSample& sample) {
   last_ = t;
 }
 
-void HeldInputs::restart() {
+void HoldTimes::restart() {
   for (Axis& axis : axes_) {
     axis.end(last_.value_or(axis.since));
   }
   last_.reset();
 }
 
-std::array<double, 2> HeldInputs::found() const {
+std::array<double, 2> HoldTimes::found() const {
   return {axes_[0].held.value(kFraction), axes_[1].held.value(kFraction)};
 }
 
