@@ -27,12 +27,13 @@ Tilt last_of(AttitudeGate& gate, double mounted) {
 
 TEST_CASE("angles come in one turn, whatever branch they were written in") {
   AttitudeGate gate;
-  const Tilt tilt = present(gate.level({0.0, 2.0 * kPi - 0.1, 0.05 - 4.0 * kPi}));
+  const Tilt tilt = present(gate.level({0.0, 2.0 * kPi - 0.1, 0.05 - 2.0 * kPi}));
   CHECK(tilt.roll == doctest::Approx(-0.1));
   CHECK(tilt.pitch == doctest::Approx(0.05));
   const Tilt beyond = present(gate.level({0.0, kPi - 0.1, kPi - 0.2}));  // the same attitude as (-0.1, 0.2)
   CHECK(beyond.roll == doctest::Approx(-0.1));
   CHECK(beyond.pitch == doctest::Approx(0.2));
+  CHECK_FALSE(gate.level({0.0, 7.0, 0.0}));
   CHECK(gate.mounting().kind == Kind::Level);
 }
 

@@ -17,6 +17,7 @@ from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inpu
 from slipwise.logs.stamps import LATEST, forward_stamps, unit_advice
 
 _TOO_MANY_ABSURD = 0.1  # part of a stream; more absurd samples than this are no accident
+_STEEPEST = 2.0 * np.pi  # [rad] a roll or pitch beyond a whole turn is no angle
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +89,11 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
     columns = clean.columns
     frame = order_codes(columns["frame"]) if "frame" in columns else np.zeros(len(clean.t), np.int64)
     others = {name: columns.get(name) for name in OPTIONAL_POSE_COLUMNS}
-    others = {name: v if v is None else np.where(np.abs(v) < ABSURD, v, np.nan) for name, v in others.items()}
+    largest = {"roll": _STEEPEST, "pitch": _STEEPEST}
+    others = {
+        name: v if v is None else np.where(np.abs(v) < largest.get(name, ABSURD), v, np.nan)
+        for name, v in others.items()
+    }
     for name in ("std_xy", "std_yaw"):  # 0 and less is how many programs write that it is not known
         deviation = others[name]
         if deviation is not None:
