@@ -86,7 +86,10 @@ def differences(one: Calibration, other: Calibration) -> Iterator[str]:
         moved = abs(after[name].value - parameter.value)
         if moved > MOST * parameter.std:
             yield f"{name} moved by {moved / parameter.std:.2g} sigma"
-    if (one.verdict.good, one.verdict.not_identifiable) != (other.verdict.good, other.verdict.not_identifiable):
+    if (one.verdict.good, one.verdict.not_identifiable) != (
+        other.verdict.good,
+        other.verdict.not_identifiable,
+    ):
         yield f"the verdict was '{one.verdict.sentence}' and is '{other.verdict.sentence}'"
 
 

@@ -52,7 +52,8 @@ TEST_CASE("a map that is a plane tilts a robot as the plane does, wherever the p
 
 TEST_CASE("from one side of a wrap to the other, an attitude goes the shorter way") {
   const MeasuredTilts measured{{{0.0, 6.2, 0.02}, {1.0, 0.1, 6.26}}};
-  CHECK(std::sin(tilt_between(measured, 0.5).roll) == doctest::Approx(std::sin(0.5 * (6.2 + 0.1 - 2.0 * std::numbers::pi))));
+  CHECK(std::sin(tilt_between(measured, 0.5).roll) ==
+        doctest::Approx(std::sin(0.5 * (6.2 + 0.1 - 2.0 * std::numbers::pi))));
   CHECK(std::cos(tilt_between(measured, 0.5).pitch) > 0.999);
 }
 

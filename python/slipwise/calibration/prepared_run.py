@@ -87,7 +87,9 @@ class WindowSet:
         for clock in np.unique(clocks).tolist():
             first, last = np.searchsorted(self._clock_of_each, (clock, clock + 1)).tolist()
             at = clocks == clock
-            counts[at] = first + np.searchsorted(self.end[first:last], time[at] + _core.SAME_STAMP, side="right")
+            counts[at] = first + np.searchsorted(
+                self.end[first:last], time[at] + _core.SAME_STAMP, side="right"
+            )
         return counts
 
     def passed(self, pace: WindowSet) -> Ints:
@@ -102,7 +104,9 @@ class WindowSet:
     @cached_property
     def _clocks(self) -> Ints:
         """Number of each run's clock, [runs]."""
-        restarts = [earlier.end > later.begin + _core.SAME_STAMP for earlier, later in itertools.pairwise(self.drive)]
+        restarts = [
+            earlier.end > later.begin + _core.SAME_STAMP for earlier, later in itertools.pairwise(self.drive)
+        ]
         return np.cumsum([0, *restarts], dtype=np.int64)
 
 

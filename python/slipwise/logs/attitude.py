@@ -37,7 +37,7 @@ def levelled(log: Log) -> Log:
 
 
 def mounting_words(mounting: _core.AttitudeMounting) -> str:
-    """Say how the sensor of roll and pitch sits on the robot, and what is done about it; "" where it is level."""
+    """Say how the sensor of roll and pitch sits on the robot, and what is done; "" where it is level."""
     if mounting.kind == _core.MountingKind.Level:
         return ""
     roll, pitch = np.degrees([mounting.roll, mounting.pitch])

@@ -89,7 +89,9 @@ class _Run:
         last = np.searchsorted(poses.t, poses.t + _LENGTH - _core.SAME_STAMP)
         first = np.flatnonzero(last < len(poses))
         last = last[first]
-        whole = (poses.frame[first] == poses.frame[last]) & (poses.t[last] - poses.t[first] < _LONGEST - _core.SAME_STAMP)
+        whole = (poses.frame[first] == poses.frame[last]) & (
+            poses.t[last] - poses.t[first] < _LONGEST - _core.SAME_STAMP
+        )
         spread = slice(None, None, max(1, int(whole.sum()) // _MOST_WINDOWS))
         path = dead_reckoned(wheels)
         return cls(path, np.unwrap(path.yaw), poses, first[whole][spread], last[whole][spread])

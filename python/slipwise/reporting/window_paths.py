@@ -17,7 +17,6 @@ from slipwise.reporting.contents import Contents
 from slipwise.segments import WindowRules, cut_windows
 
 
-
 @dataclass(frozen=True, eq=False)
 class WindowPaths:
     """Paths of one window, [N, 3] each: x, y [m], yaw [rad] in the frame of the robot at the start."""
