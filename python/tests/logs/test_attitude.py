@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from sample_logs import Drive, simulated_log
 
-from slipwise.calibration import MotionLearner, calibrate
+from slipwise.calibration import calibrate
+from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.errors import LogError
 from slipwise.logs import Log
 from slipwise.logs.quality import checked
