@@ -13,6 +13,7 @@ from slipwise.logs.clock_steps import BACK, ENOUGH
 from slipwise.logs.header_clock import apart_words, clock_between, is_apart, shift_words
 
 LOOKED_AT = 200  # messages with a header, of late
+_STEADY = 0.3  # s that delays differ by; more is another rate of the clock
 _FEWEST = 20  # of a topic, before its clock is taken for another than that of the poses
 
 
@@ -56,7 +57,7 @@ class Stamps:
         main = self._main()
         if main is None or not is_apart(main.lead):
             return arrived
-        if not self._said and len(main) >= _FEWEST:
+        if not self._said and main.steady:
             self._said = True
             dated = "what has no header is dated on their clock"
             self._say(f"{apart_words(main.lead, 'this computer')}: {dated}")
@@ -68,7 +69,7 @@ class Stamps:
     def _shift(self, topic: str) -> float:
         """Return what is added to the stamps of a topic that is on another clock than the poses [s]."""
         own, main = self._clocks[topic], self._main()
-        if self.simulated or main is None or main is own or min(len(own), len(main)) < _FEWEST:
+        if self.simulated or main is None or main is own or not (own.steady and main.steady):
             return self._shifts.get(topic, 0.0)
         found, before = clock_between(main.lead, own.lead), self._shifts.get(topic, 0.0)
         if abs(found - before) > BACK or bool(found) != bool(before):
@@ -84,10 +85,8 @@ class _Lead:
     def __init__(self) -> None:
         self._leads: deque[float] = deque(maxlen=LOOKED_AT)
         self._odd: list[float] = []  # that do not go with these: several in a row are a clock that was set
-        self.lead = 0.0  # s
-
-    def __len__(self) -> int:
-        return len(self._leads)
+        self.lead = 0.0  # s; of a clock that runs at another rate the newest
+        self.steady = False  # the clock runs at the rate of this computer's
 
     def take(self, lead: float) -> None:
         if self._leads and abs(lead - float(np.median(self._leads))) > BACK:
@@ -99,4 +98,5 @@ class _Lead:
         else:
             self._leads.append(lead)
         self._odd = []
-        self.lead = max(self._leads)
+        self.steady = len(self._leads) >= _FEWEST and max(self._leads) - min(self._leads) < _STEADY
+        self.lead = max(self._leads) if self.steady or len(self._leads) < _FEWEST else lead

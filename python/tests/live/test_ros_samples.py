@@ -164,3 +164,18 @@ def test_a_clock_that_is_set_dates_what_has_no_header_anew() -> None:
     heard(stamps, "/pose", 0.0)
     heard(stamps, "/pose", -10.0, 1005.0)
     assert stamps.of(no_header, 1010.0, "/cmd_vel") == pytest.approx(1000.0, abs=0.02)
+
+
+@pytest.mark.parametrize("rate", [0.5, 0.8, 10.0])
+def test_simulated_time_at_another_rate_is_followed_live(rate: float) -> None:
+    stamps, no_header = Stamps("/pose"), twist(1.0, 0.0, 0.0)
+    for k in range(400):
+        arrived = 1000.0 + 0.02 * k
+        seconds = 12.0 + rate * 0.02 * k
+        for topic in ("/pose", "/odom")[: 1 + k % 2]:
+            message = Made(header=Made(stamp=Made(sec=0, nanosec=round(1e9 * seconds))))
+            assert stamps.of(message, arrived, topic) == pytest.approx(seconds)
+        if k > 150:
+            assert stamps.of(no_header, arrived, "/cmd_vel") == pytest.approx(
+                seconds, abs=0.12 * max(rate, 1.0)
+            )
