@@ -95,7 +95,14 @@ def require_columns(table: Table, *, poses: bool, described: bool = False, car: 
     if not driven:
         alone = "cmd_curvature" in names  # without a speed it is no motion
         missing.append("cmd_v, the speed that cmd_curvature is driven at" if alone else _AN_INPUT)
-    positions = not driven and any({*pair} <= set(names) for pair in (("x", "y"), ("tx", "ty")))
+    beside = f"LOG --poses {table.path.name}"
+    if not driven and {"tx", "ty"} <= set(names):  # as evo writes poses
+        raise LogError(
+            "this is a table of poses, without commands or wheel speeds",
+            where=str(table.path),
+            advice=f"give the log that goes with it, and this file beside it: {beside}",
+        )
+    positions = not driven and {"x", "y"} <= set(names)
     if missing and not table.named:
         raise LogError(
             f"a table of {len(names)} columns of numbers without names",
@@ -110,7 +117,7 @@ def require_columns(table: Table, *, poses: bool, described: bool = False, car: 
             where=str(table.path),
             advice=f"found {listed(names)}; say which is which, such as --columns t=time,cmd_v=vx"
             + (", or give --poses FILE" if poses and "x" in missing else "")
-            + (f"; poses alone go beside a log: LOG --poses {table.path.name}" if positions else ""),
+            + (f"; poses alone go beside a log: {beside}" if positions else ""),
         )
 
 

@@ -103,6 +103,8 @@ def test_a_file_of_poses_is_no_log(slipwise: Slipwise, field_log: FieldLog, fold
     (folder / "plain.txt").write_text("".join(" ".join(row) + "\n" for row in rows_of(tum)))
     (folder / "track.nmea").write_text("$GPGGA,120000.00,4800.0,N,01100.0,E,4,12,1.0,500,M,46,M,,*5B\n")
     (folder / "track.gpx").write_text('<?xml version="1.0"?>\n<gpx version="1.1"></gpx>\n')
+    rows = [",".join(row) for row in rows_of(tum)]
+    (folder / "evo.csv").write_text("\n".join(("timestamp,tx,ty,tz,qx,qy,qz,qw", *rows)) + "\n")
     called = {
         tum: "a TUM pose file",
         "plain.txt": "a TUM pose file",
@@ -110,6 +112,7 @@ def test_a_file_of_poses_is_no_log(slipwise: Slipwise, field_log: FieldLog, fold
         "track.nmea": "an NMEA file",
         "track.gpx": "a GPX file",
     }
+    assert "this is a table of poses" in slipwise("calibrate", "evo.csv").line
     for path, name in called.items():
         for verb in ("calibrate", "inspect"):
             result = slipwise(verb, path)
