@@ -105,5 +105,5 @@ def part_of(stream: Arrivals, steps: Sequence[float], together: float = TOGETHER
 
 def _amount(t: Floats, place: int) -> float:
     """By how much the stamp at a place is behind the newest before [s]."""
-    before = t[max(place - ENOUGH, 0) : place]
-    return float(np.nanmax(before) - t[place])
+    before = t[:place]
+    return float(before[np.isfinite(before)][-ENOUGH:].max() - t[place])

@@ -22,6 +22,7 @@ from sample_field import (
 )
 
 from slipwise.logs import open_log
+from slipwise.logs.clock_steps import Arrivals, clock_steps, steps_back
 from slipwise.logs.log import Floats
 
 
@@ -141,6 +142,17 @@ def test_a_clock_that_is_set_back_loses_nothing(tmp_path: Path, seconds: float) 
     assert not log.left_out
     assert any(f"the clock was set back by {seconds:.0f}"[:-1] in note for note in log.notes)
     assert np.abs(offsets_of_commands(path)).max() < 0.11
+
+
+def test_steps_of_a_clock_are_told_from_faulty_stamps() -> None:
+    t = 0.1 * np.arange(100)
+    lone, reversed_t, missing = t.copy(), t[::-1].copy(), t.copy()
+    lone[50] = 500.0
+    missing[50:] -= 3.0
+    missing[40:50] = np.nan
+    assert [len(steps_back(each)) for each in (t, lone, reversed_t, missing)] == [0, 0, 0, 1]
+    (step,) = clock_steps([Arrivals(t, missing)])
+    assert step.sentence() == "the clock was set back by 1.9 s: a new run begins"
 
 
 def test_a_table_whose_clock_is_set_back_is_two_runs(tmp_path: Path) -> None:
