@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from slipwise.calibration.consistency import Consistency
-from slipwise.calibration.judgement import Judgement, Ratio
+from slipwise.calibration.judgement import Judgement, Ratio, Still
 from slipwise.models.schema import HeldOut
 
 BETTER: Ratio = (0.5, 0.4, 0.6)
@@ -24,7 +24,7 @@ def judged(
     consistency: Consistency | None = None,
     *,
     windows: int = 9,
-    still: Ratio = (0.1, 0.05, 0.2),
+    still: float = 0.1,
 ) -> Judgement:
     """A judgement with these ratios to a baseline that errs by 1 m and 1 rad after 5 s."""
     errors = [0.0 if ratio[0] != ratio[0] else ratio[0] for ratio in (position, heading)]
@@ -37,4 +37,4 @@ def judged(
         baseline_position=baseline[0],
         baseline_heading=baseline[1],
     )
-    return Judgement(held_out, position, heading, still, consistency)
+    return Judgement(held_out, position, heading, Still(2.0, still, 1.0), consistency)

@@ -23,6 +23,7 @@ class ToJudge:
     baseline: Predictions  # of the same segments
     known: Identified
     limits: tuple[str, ...]  # advice on limits of the actuator
+    horizons: tuple[Predictions, ...]  # the model's at all horizons
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +45,7 @@ class Sensors:
 
 def judge(learned: ToJudge, facts: LogFacts) -> Judged:
     """Judge what was learned, knowing what the measurements say of themselves."""
-    judgement = judgement_of(learned.predictions, learned.baseline)
+    judgement = judgement_of(learned.predictions, learned.baseline, learned.horizons)
     verdict = give_verdict(judgement, learned.known, facts)
     if not verdict.contradictions:
         verdict = replace(verdict, advice=tuple(dict.fromkeys((*verdict.advice, *learned.limits))))
@@ -71,4 +72,5 @@ def to_judge(learned: Learned, settings: Settings, sensors: Sensors, *, position
     known = replace(known, force=force_words(learned.identifiable, settings))
     kept = learned.kept.limits is not None
     limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=sensors.wheels)
-    return ToJudge(learned.predictions[learned.judged], learned.baseline[learned.judged], known, limits)
+    judged = learned.judged
+    return ToJudge(learned.predictions[judged], learned.baseline[judged], known, limits, learned.predictions)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,13 +24,27 @@ _UNKNOWN: Ratio = (np.nan, np.nan, np.nan)
 
 
 @dataclass(frozen=True)
+class Still:
+    """The rival that stands still, at the horizon where the model does best beside it."""
+
+    horizon: float  # s
+    error: float  # the model's mean error: m, or rad where turns alone were measured
+    motion: float  # how far the robot moves: the mean error of one said to stand still
+
+    @property
+    def explained(self) -> float:
+        """The part of the motion that the inputs explain: 1 where predictions are right, 0 as for a rock."""
+        return 1.0 - self.error / self.motion
+
+
+@dataclass(frozen=True)
 class Judgement:
     """The held-out comparison with the kinematic baseline."""
 
     held_out: HeldOut  # as `evaluate` shows them
     position_ratio: Ratio
     heading_ratio: Ratio
-    still_ratio: Ratio  # mean error over the mean motion, which is the error of a robot said to stand still
+    still: Still | None  # None where nothing moved
     consistency: Consistency | None = None
 
     @property
@@ -38,14 +53,9 @@ class Judgement:
         return self.held_out.segments < FEWEST_WINDOWS
 
     @property
-    def explained(self) -> float:
-        """The part of the motion that the inputs explain: 1 where predictions are right, 0 as for a rock."""
-        return 1.0 - self.still_ratio[0]
-
-    @property
     def unexplained(self) -> bool:
         """Whether the inputs explain too little of the motion."""
-        return self.explained < LEAST_EXPLAINED
+        return self.still is not None and self.still.explained < LEAST_EXPLAINED
 
     @property
     def beats_baseline(self) -> bool:
@@ -84,8 +94,14 @@ class Judgement:
         return {"position": _or_one(self.position_ratio), "heading": _or_one(self.heading_ratio)}
 
 
-def judgement_of(learned: Predictions, baseline: Predictions) -> Judgement:
-    """Compare a method with the kinematic baseline on the second half of the segments."""
+def judgement_of(
+    learned: Predictions, baseline: Predictions, horizons: Sequence[Predictions] = ()
+) -> Judgement:
+    """Compare a method with the kinematic baseline on the second half of the segments.
+
+    `horizons` are the method's predictions at others too: where a robot drifts, inputs explain its motion for
+    a second or two, and nothing after five.
+    """
     half = held_out_half(len(learned))
     held_out = HeldOut(
         horizon=learned.horizon,
@@ -96,19 +112,26 @@ def judgement_of(learned: Predictions, baseline: Predictions) -> Judgement:
         baseline_heading=_mean(baseline.heading_error[half]),
     )
     if held_out.segments == 0:
-        return Judgement(held_out, _UNKNOWN, _UNKNOWN, _UNKNOWN)
-    error, motion = (
-        (learned.heading_error, learned.turn)
-        if held_out.turns_alone
-        else (learned.position_error, learned.distance)
-    )
+        return Judgement(held_out, _UNKNOWN, _UNKNOWN, None)
+    rivals = [_still(each, turns=held_out.turns_alone) for each in (*horizons, learned)]
     return Judgement(
         held_out,
         ratio_of_means(learned.position_error[half], baseline.position_error[half]),
         ratio_of_means(learned.heading_error[half], baseline.heading_error[half]),
-        ratio_of_means(error[half], motion[half]),
+        max((rival for rival in rivals if rival is not None), key=lambda r: r.explained, default=None),
         consistency_of(learned),
     )
+
+
+def _still(learned: Predictions, *, turns: bool) -> Still | None:
+    half = held_out_half(len(learned))
+    errors, motions = (
+        (learned.heading_error, learned.turn) if turns else (learned.position_error, learned.distance)
+    )
+    motion = _mean(motions[half])
+    if too_short(len(learned)) or motion <= 0.0:
+        return None
+    return Still(learned.horizon, _mean(errors[half]), motion)
 
 
 def too_short(count: int) -> bool:

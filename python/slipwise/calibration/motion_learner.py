@@ -14,8 +14,8 @@ from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_
 from slipwise.calibration.core_settings import car_of, core_settings
 from slipwise.calibration.judge import Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement
-from slipwise.calibration.learned import Learned, judged_horizon
-from slipwise.calibration.learned_log import found_limits, kept_posterior, predictions_of
+from slipwise.calibration.learned import Learned
+from slipwise.calibration.learned_log import found_limits, held_out_predictions, kept_posterior
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.learner_answers import Event, PredictedPath, event_of
 from slipwise.calibration.measured_body import measured_body
@@ -267,15 +267,13 @@ class MotionLearner(Measurements, RememberedSurfaces):
     def _learned(self, model: _core.LearnedModel, *, limits: bool) -> Learned:
         separation = self._settings.vehicle.wheel_separation
         found = found_limits(self._core, model, separation) if limits else None
-        each = list(zip(JUDGING_HORIZONS, model.held_out, model.students, strict=True))
-        horizon, held_out, _ = each[judged_horizon([len(predictions) for _, predictions, _ in each])]
-        predictions, baseline = predictions_of([held_out.columns()], [horizon])
+        predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
         return Learned(
             kept_posterior(model, found),
             posterior_of(model.slip, model.disturbance),
             predictions,
             baseline,
-            {h: student_of(student) for h, predictions, student in each if len(predictions)},
+            {p.horizon: student_of(s) for p, s in zip(predictions, model.students, strict=True) if len(p)},
             None,
             tuple(basis.name for basis in self._settings.bases()),
             None if found is None else found.search,

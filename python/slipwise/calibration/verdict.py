@@ -136,14 +136,15 @@ def _unexplained(judgement: Judgement, facts: LogFacts) -> str:
     """That the inputs say little of how the robot moves: they may be those of another one."""
     if not judgement.unexplained:
         return ""
-    held_out, inputs = judgement.held_out, _FOLLOWED[facts.input_name]
-    error, unit = (held_out.heading, "rad") if held_out.turns_alone else (held_out.position, "m")
-    motion = number_text(error / judgement.still_ratio[0])
-    share, least = 100.0 * max(judgement.explained, 0.0), 100.0 * LEAST_EXPLAINED
+    still, inputs = judgement.still, _FOLLOWED[facts.input_name]
+    assert still is not None
+    unit = "rad" if judgement.held_out.turns_alone else "m"
+    share, least = 100.0 * max(still.explained, 0.0), 100.0 * LEAST_EXPLAINED
     return (
         f"{_REFUSED} the {inputs} do not explain the poses. They explain {share:.0f} % of the motion, a "
-        f"good model {least:.0f} % and more: saying that the robot stands still misses by {motion} {unit} "
-        f"after {held_out.horizon:g} s, the model by {number_text(error)} {unit}."
+        f"good model {least:.0f} % and more: saying that the robot stands still misses by "
+        f"{number_text(still.motion)} {unit} after {still.horizon:g} s, the model by "
+        f"{number_text(still.error)} {unit}."
     )
 
 

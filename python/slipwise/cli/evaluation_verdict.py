@@ -38,7 +38,9 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
     longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
     compared = evaluation.clocks_compared
     facts = LogFacts(evaluation.contradictions, _SHORTAGE, evaluation.input, evaluation.positions, compared)
-    verdict = judge(ToJudge(longest[method], longest["none"], _identified(source), ()), facts).verdict
+    horizons = tuple(p for p in evaluation.predictions if p.method == method)
+    learned = ToJudge(longest[method], longest["none"], _identified(source), (), horizons)
+    verdict = judge(learned, facts).verdict
     return replace(verdict, advice=tuple(dict.fromkeys((*verdict.advice, *_more_advice(evaluation, method)))))
 
 

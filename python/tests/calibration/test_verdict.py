@@ -171,15 +171,15 @@ def test_a_worse_error_is_named_with_how_much_worse_it_is() -> None:
 
 
 def test_inputs_that_do_not_explain_the_motion_give_no_good_model_though_it_beats_the_baseline() -> None:
-    verdict = give_verdict(judged(BETTER, BETTER, still=(1.05, 0.8, 1.3)), Identified(2, ()), facts())
+    verdict = give_verdict(judged(BETTER, BETTER, still=1.05), Identified(2, ()), facts())
     assert not verdict.good
     assert "the commands do not explain the poses. They explain 0 % of the motion" in verdict.sentence
-    assert "stands still misses by 0.476 m after 5 s, the model by 0.500 m" in verdict.sentence
+    assert "stands still misses by 1.00 m after 2 s, the model by 1.05 m" in verdict.sentence
     assert verdict.advice[0].startswith("Check that commands and poses are of one robot and one drive")
-    half = give_verdict(judged(BETTER, BETTER, still=(0.52, 0.4, 0.7)), Identified(2, ()), facts())
+    half = give_verdict(judged(BETTER, BETTER, still=0.52), Identified(2, ()), facts())
     assert not half.good
     assert "They explain 48 % of the motion" in half.sentence
-    assert give_verdict(judged(BETTER, BETTER, still=(0.45, 0.2, 0.7)), Identified(2, ()), facts()).good
+    assert give_verdict(judged(BETTER, BETTER, still=0.45), Identified(2, ()), facts()).good
 
 
 def test_ellipsoids_that_are_not_true_are_said_and_a_good_verdict_is_not_plainly_good() -> None:

@@ -24,7 +24,7 @@ def judgement(segments: int = 40, ratio: tuple[float, float, float] = (0.4, 0.3,
         baseline_position=0.1,
         baseline_heading=0.1,
     )
-    return Judgement(held_out, ratio, ratio, (0.1, 0.05, 0.2))
+    return Judgement(held_out, ratio, ratio, None)
 
 
 def model(made: Made | None = None, **changes: object) -> Model:
