@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small Kalman filter over the deviation of slip from what was learned (derivations/slip-disturbance.md).
+// A small Kalman filter over the deviation of slip from what was learned (derivations/uncertainty.md).
 #include "slipwise/disturbance/slip_deviation.hpp"
 
 #include <algorithm>

@@ -51,7 +51,7 @@ Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobi
 }
 
 /// How far the segment's chart bends away from its linearisation over what is left open of the actuator: the covariance
-/// of the second-order term along the actuator's principal directions (derivations/iterated-filter.md). The slip is
+/// of the second-order term along the actuator's principal directions (derivations/filter.md). The slip is
 /// linear enough.
 Eigen::Matrix3d second_order(const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
                              const Segment& segment, const Eigen::Vector3d& predicted) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Posterior against prior, in units of the prior (derivations/observability.md).
+// Posterior against prior, in units of the prior (derivations/filter.md).
 #include "slipwise/filter/observability.hpp"
 
 #include <algorithm>

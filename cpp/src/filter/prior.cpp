@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Priors in physical units (derivations/priors.md).
+// Priors in physical units (derivations/filter.md).
 #include "slipwise/filter/prior.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Learning goes on from what another learner knew: its robot and its surfaces (derivations/surface-memory.md).
+// Learning goes on from what another learner knew: its robot and its surfaces (derivations/surfaces.md).
 #include <algorithm>
 #include <cmath>
 #include <iterator>

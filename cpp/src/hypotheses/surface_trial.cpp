@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model average on surfaces that it knows: they compete, and one is taken (derivations/surface-memory.md).
+// A model average on surfaces that it knows: they compete, and one is taken (derivations/surfaces.md).
 #include <algorithm>
 #include <cmath>
 #include <iterator>

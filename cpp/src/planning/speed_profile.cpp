@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The trapezoid of speed and its derivative by its length (derivations/manoeuvres.md).
+// The trapezoid of speed and its derivative by its length (derivations/rollouts.md).
 #include "slipwise/planning/speed_profile.hpp"
 
 #include <algorithm>

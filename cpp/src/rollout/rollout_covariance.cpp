@@ -88,7 +88,7 @@ class ParameterPart {
   std::span<double> out_;
 };
 
-/// Noise of one rollout as it goes along (derivations/jacobians.md and uncertainty.md): sums carried back to the
+/// Noise of one rollout as it goes along (derivations/model.md and uncertainty.md): sums carried back to the
 /// world's origin.
 class NoiseSums {
  public:

@@ -75,7 +75,7 @@ class NoisyPath {
   }
 
  private:
-  /// Adds the slip disturbance, which holds still over a period (derivations/slip-disturbance.md).
+  /// Adds the slip disturbance, which holds still over a period (derivations/uncertainty.md).
   void disturbance(Eigen::Vector3d& tangent, const Eigen::Vector3d& drive) {
     for (Eigen::Index i = 0; i < terms_.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);

@@ -68,7 +68,7 @@ BodyGravity under(const Segment& segment, const ActuatorStep& step, double theta
   return by_heading ? headed(pull, segment.heading + theta + 0.5 * step.turn) : pull;
 }
 
-/// Sums of derivations/jacobians.md: the steps' derivatives carried back to the path's start, one column per
+/// Sums of derivations/model.md: the steps' derivatives carried back to the path's start, one column per
 /// parameter.
 struct SensitivitySums {
   Eigen::Matrix<double, 3, Eigen::Dynamic> slip;

@@ -76,7 +76,7 @@ void DelayedState::advance(const InputHistory& inputs, const Leg& leg) {
 }
 
 /// X_now <- X_now exp-path(p) with the first-order expansion about `point`: F = [blkdiag(R, 1) J, Phi] of
-/// derivations/delayed-state.md.
+/// derivations/thesis.md.
 void DelayedState::advance_at(const Point& point, const InputHistory& inputs, const Leg& leg, double inflation) {
   if (!started_ || !(leg.end > time_)) {
     throw std::invalid_argument("a delayed-state filter must be started, and advances to later times only");
@@ -191,7 +191,7 @@ IekfUpdate DelayedState::learn(const InputHistory& inputs, const Segment& segmen
   return result;
 }
 
-/// Information added to single parameters, negative where the prior widens (derivations/priors.md); the clone
+/// Information added to single parameters, negative where the prior widens (derivations/filter.md); the clone
 /// makes the covariance singular, so that it is never inverted.
 bool DelayedState::change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
   Estimate changed = joint_;

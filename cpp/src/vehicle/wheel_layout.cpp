@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wheels to twist and back: one linear measurement of (v, vy, omega) per rolling constraint (derivations/wheels.md).
+// Wheels to twist and back: one linear measurement of (v, vy, omega) per rolling constraint (derivations/sensors.md).
 #include "slipwise/vehicle/wheel_layout.hpp"
 
 #include <Eigen/LU>

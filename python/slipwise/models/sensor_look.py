@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a pose sensor would sit whose place looks like the slip of a model (derivations/pose-sensor.md)."""
+"""Where a pose sensor would sit whose place looks like the slip of a model (derivations/sensors.md)."""
 
 from __future__ import annotations
 

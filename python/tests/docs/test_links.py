@@ -43,3 +43,19 @@ def test_every_page_is_reached_from_the_readme() -> None:
         links = [link.partition("#")[0] for link in LINK.findall(prose(page)) if "://" not in link]
         waiting += [(page.parent / link).resolve() for link in links if link]
     assert set(PAGES) == reached
+
+
+def test_pages_that_sources_name_exist() -> None:
+    named = re.compile(r"\b(?:docs/|(?=derivations/))([\w/-]+\.md)")
+    tops = (ROOT / top for top in ("cpp", "python", "packages", "benchmarks", "docs"))
+    sources = [
+        p for top in tops for p in top.rglob("*") if p.suffix in (".py", ".hpp", ".cpp", ".cu", ".yaml")
+    ]
+    gone = {
+        f"{name_of(path)}: {page}"
+        for path in sources
+        for page in named.findall(path.read_text(encoding="utf-8"))
+        if not (ROOT / "docs" / page).exists()
+    }
+    assert len(sources) > 500
+    assert not gone

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A car commanded by throttle and steering without units: static curves, a lag, drag of cornering and understeer
-// (derivations/car-commands.md).
+// (derivations/sensors.md).
 #pragma once
 
 #include <optional>

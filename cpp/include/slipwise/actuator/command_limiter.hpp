@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Limits of the drive as they act: what it was commanded, and what its ramps hold meanwhile
-// (derivations/actuator-limits.md).
+// (derivations/actuator.md).
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a drive does to its commands before it follows them: dead-band, saturation, and rate limits
-// (derivations/actuator-limits.md).
+// (derivations/actuator.md).
 #pragma once
 
 #include <compare>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What measured speeds say of the limits in front of a drive (derivations/actuator-limits.md).
+// What measured speeds say of the limits in front of a drive (derivations/actuator.md).
 #pragma once
 
 #include "slipwise/actuator/actuator_model.hpp"

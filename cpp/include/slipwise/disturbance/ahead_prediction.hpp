@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Predicting a segment that leads over several surfaces (derivations/terrain-ahead.md).
+// Predicting a segment that leads over several surfaces (derivations/surfaces.md).
 #pragma once
 
 #include "slipwise/disturbance/slip_disturbance.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far slip is now from what was learned, under one candidate of its disturbance (derivations/slip-disturbance.md).
+// How far slip is now from what was learned, under one candidate of its disturbance (derivations/uncertainty.md).
 #pragma once
 
 #include <Eigen/Core>

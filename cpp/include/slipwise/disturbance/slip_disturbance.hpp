@@ -50,7 +50,7 @@ struct ExpectedPoses {
 
 /// Adds to the fractions of V and w in the slip rates a deviation that decays, follows it through the last segments,
 /// and carries it into a prediction. How large and how slow the disturbance is is weighted among candidates by what
-/// they predict; the first candidate is that it does not (derivations/slip-disturbance.md).
+/// they predict; the first candidate is that it does not (derivations/uncertainty.md).
 class DisturbanceFilter {
  public:
   /// \throws std::invalid_argument when a fraction or a time constant is not positive and finite.

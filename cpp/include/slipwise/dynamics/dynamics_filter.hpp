@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // State and parameters of a user's dynamics, learned together from one measurement after the other
-// (derivations/other-dynamics.md).
+// (derivations/slopes-and-forces.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -71,7 +71,7 @@ class DynamicsFilter {
   Estimate state() const;             ///< now
   Estimate parameters() const;        ///< as the filter takes them to be known
   /// With a covariance that also holds where residuals are larger than the noise said, or correlated in time
-  /// (derivations/reported-covariance.md).
+  /// (derivations/uncertainty.md).
   Estimate reported_parameters() const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A user's dynamics integrated over a stretch of time, with derivatives by state and parameters at its start, and the
-// noise that adds up on the way (derivations/other-dynamics.md).
+// noise that adds up on the way (derivations/slopes-and-forces.md).
 #pragma once
 
 #include <Eigen/Core>

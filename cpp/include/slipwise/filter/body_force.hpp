@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A lumped force that acts on the robot, as states of a filter that come and go slowly: weak constraints of thesis
-// 8.1.1 (derivations/forces.md).
+// 8.1.1 (derivations/slopes-and-forces.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -47,7 +47,7 @@ class CausalFilter {
   void go_on_with(const SurfaceSlip& surface, double drift);
   /// The robot is as it was learned before: `robot` are the parameters after those of slip.
   void know_robot(const Estimate& robot);
-  /// The prior of a surface that was never driven, from those that were (derivations/surface-memory.md).
+  /// The prior of a surface that was never driven, from those that were (derivations/surfaces.md).
   SurfaceSlip new_surface(std::span<const SurfaceSlip> known) const;
   const ReferenceSpeeds& speeds() const { return speeds_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Iterated extended Kalman filter over disjoint segments (derivations/iterated-filter.md and priors.md).
+// Iterated extended Kalman filter over disjoint segments (derivations/filter.md).
 #pragma once
 
 #include <Eigen/Core>

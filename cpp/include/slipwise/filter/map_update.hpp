@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The most probable state, given its prior and one nonlinear measurement: Gauss-Newton in dual form, whose steps are
-// halved until they help (derivations/iterated-filter.md).
+// halved until they help (derivations/filter.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -22,7 +22,7 @@ struct MeasurementScore {
 
 /// Running sums of the scores J^T R^-1 r of segments: their covariance, and that with the scores before them. Compared
 /// with the information J^T R^-1 J, they give factors for the variances of an estimate
-/// (derivations/reported-covariance.md).
+/// (derivations/uncertainty.md).
 class ScoreCovariance {
  public:
   ScoreCovariance() = default;  ///< of a model without parameters

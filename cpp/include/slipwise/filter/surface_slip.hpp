@@ -13,7 +13,7 @@ namespace slipwise {
 
 /// The posterior of the slip parameters of one surface, given the parameters of the robot. Lags, delays, clock and
 /// sensor are learned on over all surfaces; what they have become since moves the slip by what it was worth
-/// (derivations/surface-memory.md).
+/// (derivations/surfaces.md).
 struct SurfaceSlip {
   Eigen::VectorXd mean;        ///< [slip] where the robot's parameters are `robot`
   Eigen::MatrixXd covariance;  ///< [slip, slip] were the robot's parameters known

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stretch of a process observed from its start: what is measured on the way and where it ends, with common noise
-// (derivations/iterated-filter.md).
+// (derivations/filter.md).
 #pragma once
 
 #include <Eigen/Core>

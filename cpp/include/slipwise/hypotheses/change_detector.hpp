@@ -37,7 +37,7 @@ struct ChangeFit {
 };
 
 /// `residuals` are whitened, [3 n]; the columns of `by_change` are their derivatives by independent changes in units of
-/// their nominal size, [3 n, changes]. Residuals and changes have heavy tails (derivations/change-of-ground.md).
+/// their nominal size, [3 n, changes]. Residuals and changes have heavy tails (derivations/surfaces.md).
 ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change);
 
 /// The ways in which a terrain may come to differ: each a list of changes that come together.

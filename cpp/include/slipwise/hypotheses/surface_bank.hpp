@@ -56,7 +56,7 @@ struct LabelCounts {
 };
 
 /// Recalls a surface where it comes back, and opens another where none of those known fits
-/// (derivations/surface-memory.md).
+/// (derivations/surfaces.md).
 class SurfaceBank {
  public:
   SurfaceBank() = default;

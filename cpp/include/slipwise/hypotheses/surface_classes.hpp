@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which classes of terrain were said on which surface: what a sensor's class says of the surface, and the other way
-// round (derivations/surface-memory.md).
+// round (derivations/surfaces.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -24,7 +24,7 @@ struct SurfacePosterior {
 
 /// The density of each segment given those before it: Kalman filters over the parameters and the disturbance of slip,
 /// so that segments which miss alike count as what they have in common, not one by one
-/// (derivations/surface-memory.md).
+/// (derivations/surfaces.md).
 class SurfaceEvidence {
  public:
   SurfaceEvidence() = default;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joint filter over one channel's actuator parameters and the state of the drive behind them, which wheel speeds
-// measure (derivations/actuator-learning.md).
+// measure (derivations/actuator.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of an axis's measured speed is not its actuator: white noise of the samples, and a correlated deviation
-// (derivations/actuator-learning.md).
+// (derivations/actuator.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learns what throttle and steering of a car do from how it moved, recursively: nothing later is used
-// (derivations/car-commands.md).
+// (derivations/sensors.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -58,7 +58,7 @@ struct WholeTurn<double> {
 
 }  // namespace lane_series
 
-/// A = sin(f)/f and B = (1 - cos(f))/f of derivations/exact-step.md; Vector holds lanes of Scalar.
+/// A = sin(f)/f and B = (1 - cos(f))/f of derivations/model.md; Vector holds lanes of Scalar.
 template <typename Vector>
 struct LaneArc {
   Vector a;

@@ -34,7 +34,7 @@ inline Eigen::Matrix2d rotation(double theta) {
   return (Eigen::Matrix2d() << c, -s, s, c).finished();
 }
 
-/// Vm of derivations/exact-step.md: the displacement of a unit twist over a turn.
+/// Vm of derivations/model.md: the displacement of a unit twist over a turn.
 inline Eigen::Matrix2d arc_matrix(const ArcFunctions<double>& arc) {
   return (Eigen::Matrix2d() << arc.a, -arc.b, arc.b, arc.a).finished();
 }
@@ -80,7 +80,7 @@ inline Eigen::Matrix3d adjoint(const Pose2& pose) {
   return ad;
 }
 
-/// E of derivations/jacobians.md: derivative of the chart (x, y, theta) of exp(tangent) by the tangent; `arc` is of
+/// E of derivations/model.md: derivative of the chart (x, y, theta) of exp(tangent) by the tangent; `arc` is of
 /// its turn.
 inline Eigen::Matrix3d chart_jacobian(const Eigen::Vector3d& tangent, const ArcFunctions<double>& arc) {
   Eigen::Matrix3d e = Eigen::Matrix3d::Identity();

@@ -7,7 +7,7 @@
 
 namespace slipwise {
 
-/// The functions that carry a constant twist over a turn of f [rad] into a displacement (derivations/exact-step.md).
+/// The functions that carry a constant twist over a turn of f [rad] into a displacement (derivations/model.md).
 template <typename Scalar>
 struct ArcFunctions {
   Scalar a;         ///< sin(f) / f

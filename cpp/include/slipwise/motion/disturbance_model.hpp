@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The slip disturbance about what was learned: Gauss-Markov processes on its linear terms
-// (derivations/slip-disturbance.md).
+// (derivations/uncertainty.md).
 #pragma once
 
 #include <Eigen/Core>

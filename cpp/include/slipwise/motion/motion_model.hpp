@@ -27,7 +27,7 @@ struct ActuatorParameters {
 inline constexpr Eigen::Index kExtrinsicsParameters = 3;
 
 /// Derivative, by its logarithm, of a coordinate of a time in which motion is nearly linear
-/// (derivations/iterated-filter.md): (s + 0.03) / (s + 0.3) for s [s].
+/// (derivations/filter.md): (s + 0.03) / (s + 0.3) for s [s].
 double log_time_derivative(double seconds);
 
 /// Parameter vector: slip (basis order), then log time_constant_v, log time_constant_omega, log delay_v, log

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Commands of throttle and steering as the twists that a car is known to make of them, at each moment of a run
-// (derivations/car-commands.md).
+// (derivations/sensors.md).
 #pragma once
 
 #include <deque>

@@ -55,7 +55,7 @@ Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, co
 /// The way there.
 ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
                              const ActuatorState& start);
-/// Its end with the derivative (derivations/manoeuvres.md). Limits that ramp are left out of the derivative.
+/// Its end with the derivative (derivations/rollouts.md). Limits that ramp are left out of the derivative.
 ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
                                  const ManoeuvreVector& parameters, const ActuatorState& start);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shaping a manoeuvre until it ends at a goal pose: Gauss-Newton through the motion model, within bounds (Howard and
-// Kelly 2007; derivations/manoeuvres.md).
+// Kelly 2007; derivations/rollouts.md).
 #pragma once
 
 #include "slipwise/planning/manoeuvre_end.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rollouts of a car commanded by throttle and steering: what its curves make of each command, for a rollout of twists
-// (derivations/car-commands.md).
+// (derivations/sensors.md).
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Surfaces that a robot comes to, in lanes: how much of a step lies beyond an edge, and slips otherwise
-// (derivations/terrain-ahead.md).
+// (derivations/surfaces.md).
 #pragma once
 
 #include "slipwise/rollout/lane_slip.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A plane that is not level, in lanes: gravity along the robot's axes, and a step as it is seen from above
-// (derivations/slopes.md).
+// (derivations/slopes-and-forces.md).
 #pragma once
 
 #include "slipwise/rollout/lane_job.hpp"

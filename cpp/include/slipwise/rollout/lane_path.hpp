@@ -43,7 +43,7 @@ SLIPWISE_LANES void find_arc(const Pair<Half>& f, LaneArc<Pair<Half>>& arc) {
   arc = {{low.a, high.a}, {low.b, high.b}};
 }
 
-/// The exponential of the tangent (derivations/exact-step.md). With E = A + iB and the heading as a complex number h,
+/// The exponential of the tangent (derivations/model.md). With E = A + iB and the heading as a complex number h,
 /// the step moves by (h E) times the tangent and turns h by i f (h E).
 template <class L, bool kWide>
 SLIPWISE_LANES void step(const TangentLanes<L>& tangent, PathLanes<L>& path) {

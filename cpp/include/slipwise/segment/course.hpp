@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Segments between positions: headings are courses of chords that end there, and a model's path makes the same courses
-// (derivations/course.md).
+// (derivations/sensors.md).
 #pragma once
 
 #include <Eigen/Core>

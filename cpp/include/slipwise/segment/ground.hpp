@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the ground under a segment is known to be: an attitude measured along it, a constant grade, or a map of
-// elevations (derivations/slopes.md).
+// elevations (derivations/slopes-and-forces.md).
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ground where a robot is, in numbers with or without derivatives: how it rises, and how it was seen to tilt
-// (derivations/slopes.md).
+// (derivations/slopes-and-forces.md).
 #pragma once
 
 #include <algorithm>

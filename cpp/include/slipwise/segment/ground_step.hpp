@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A step along tilted ground: what it is seen from above, and the gravity that pulls the robot on it
-// (derivations/slopes.md).
+// (derivations/slopes-and-forces.md).
 #pragma once
 
 #include <Eigen/Core>

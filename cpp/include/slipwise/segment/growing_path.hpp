@@ -62,7 +62,7 @@ class GrowingPath {
 };
 
 /// Appends an exact step; returns the derivative of the pose by the step's tangent, carried back to the path's start:
-/// Phi(0, k+1) blkdiag(R_k, 1) E_k of derivations/jacobians.md.
+/// Phi(0, k+1) blkdiag(R_k, 1) E_k of derivations/model.md.
 inline Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eigen::Vector3d& tangent) {
   const auto arc = arc_functions(tangent.z());
   const Eigen::Matrix2d heading = path.heading();

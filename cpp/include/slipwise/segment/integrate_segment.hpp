@@ -57,7 +57,7 @@ struct SegmentLinearization {
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_parameter;  ///< derivative of the chart (x, y, theta) of `predicted`
 };
 
-/// Value and exact derivative in one pass (prefix scan of derivations/jacobians.md).
+/// Value and exact derivative in one pass (prefix scan of derivations/model.md).
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                        const InputHistory& inputs, const Segment& segment);
 /// The same by the slip parameters alone, which come first: cheaper where the actuator is learned too.

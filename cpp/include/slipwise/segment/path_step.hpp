@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One step of a path: the slip state it sees, its tangent, and derivatives of both pose and tangent
-// (derivations/model.md to jacobians.md).
+// (derivations/model.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -98,7 +98,7 @@ TangentColumns<Jacobian> tangent_by(const ActuatorStep& step, const Jacobian& ja
 }
 
 /// Derivative of the pose `next` by the tangent of the step that led to it, carried back to the path's start:
-/// Phi(0, k+1) blkdiag(R_k, 1) E_k of derivations/jacobians.md. `heading` is R_k; `arc` is of the step's turn.
+/// Phi(0, k+1) blkdiag(R_k, 1) E_k of derivations/model.md. `heading` is R_k; `arc` is of the step's turn.
 inline Eigen::Matrix3d start_by_tangent(const Eigen::Matrix2d& heading, const Eigen::Vector3d& tangent,
                                         const ArcFunctions<double>& arc, const Pose2& next) {
   Eigen::Matrix3d world = chart_jacobian(tangent, arc);

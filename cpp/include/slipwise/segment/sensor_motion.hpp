@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the motion of a sensor follows from that of the robot which carries it, with derivatives
-// (derivations/pose-sensor.md).
+// (derivations/sensors.md).
 #pragma once
 
 #include <Eigen/Core>

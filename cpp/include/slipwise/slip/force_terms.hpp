@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The slip terms by which a steady force shows: motion, per distance driven and per angle turned, that does not change
-// sign with either (derivations/forces.md).
+// sign with either (derivations/slopes-and-forces.md).
 #pragma once
 
 #include <Eigen/Core>

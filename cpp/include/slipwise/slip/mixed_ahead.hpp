@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slip along a path whose surfaces are known with probabilities: mean and covariance of the mixture
-// (derivations/terrain-ahead.md).
+// (derivations/surfaces.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slip that becomes another at distances along the path, where the robot comes to another surface
-// (derivations/terrain-ahead.md).
+// (derivations/surfaces.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -9,7 +9,7 @@
 
 namespace slipwise {
 
-/// State [p; X_now; X_delayed] (derivations/delayed-state.md). Every measured pose is used once, with its own noise, so
+/// State [p; X_now; X_delayed] (derivations/thesis.md). Every measured pose is used once, with its own noise, so
 /// that neighbouring segments may share poses and nothing is counted twice. The parameters are learned through their
 /// covariance with the predicted pose.
 class DelayedState {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A path driven under one held command, its prediction, and how white slip noise spreads it
-// (derivations/steady-state.md).
+// (derivations/thesis.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ struct SteadyNoise {
 
 /// Where a constant twist leads within `time` [s].
 Pose2 steady_pose(const BodyTwist& twist, double time);
-/// Derivative of its chart by the twist (v, vy, omega): E t of derivations/jacobians.md.
+/// Derivative of its chart by the twist (v, vy, omega): E t of derivations/model.md.
 Eigen::Matrix3d steady_jacobian(const BodyTwist& twist, double time);
 
 /// The stacked covariance of the charts at `times` [K] for a unit of each noise: psd (3), then start (3); [3K, 3K]

@@ -9,7 +9,7 @@
 
 namespace slipwise {
 
-/// Exact: derivations/jacobians.md. Thesis: (6.7), in which yaw slip turns the robot but does not move it.
+/// Exact: derivations/model.md. Thesis: (6.7), in which yaw slip turns the robot but does not move it.
 enum class SegmentJacobian : std::uint8_t { Exact, Thesis };
 
 /// J = integral of Gamma(theta) U dt, thesis (6.7) with (6.9) and (6.11), along a path that is already known.

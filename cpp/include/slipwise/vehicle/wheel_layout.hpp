@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any set of wheels: body twist from wheel and steering readings by least squares, and wheels for a body twist
-// (derivations/wheels.md).
+// (derivations/sensors.md).
 #pragma once
 
 #include <Eigen/Core>
