@@ -129,8 +129,9 @@ def _limits(
         "ax_min": (measured.braking(*v), -1.0, "m/s^2"),
         "az_max": (measured.yaw_acceleration(*omega), 1.0, "rad/s^2"),
     }
+    doubts = {"ax_max": actuator.v.doubt, "ax_min": actuator.v.doubt, "az_max": actuator.omega.doubt}
     return [
-        Kept((name,), limit)
+        Kept((name,), doubts.get(name) or limit)
         if isinstance(limit, str)
         else stated((name,), limit.number * sign, f"[{unit}] {limit.source}", numbers)
         for name, (limit, sign, unit) in found.items()

@@ -109,7 +109,7 @@ def for_release(
             raise KeyError(entry.name)
     return [
         entry
-        if entry.name in there or isinstance(entry, Kept)
+        if entry.name in there
         else Kept(entry.key, f"ROS 2 {(distro or '').capitalize()} has no such parameter")
         for entry in entries
     ]

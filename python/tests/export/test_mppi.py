@@ -120,6 +120,9 @@ def test_a_lag_that_was_never_seen_to_its_end_takes_no_yaw_away() -> None:
     late = export_model(make_model(made), "mppi", name="m", options=NEW)
     assert "longer than commands were held in the log (2 s)" in late.kept["FollowPath.model_delay_wz"]
     assert "# a lag of 3 s was learned" in late.text
+    old = export_model(make_model(made), "mppi", name="m", options=KILTED)
+    assert "a lag of 3 s was learned" in old.kept["FollowPath.az_max"]
+    assert old.kept["FollowPath.model_delay_wz"] == "ROS 2 Kilted has no such parameter"
 
 
 def test_no_delay_is_written_that_leaves_the_controller_nothing_to_decide() -> None:
