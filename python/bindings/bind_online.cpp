@@ -10,6 +10,7 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
+#include "locked_learner.hpp"
 #include "pose_sources.hpp"
 #include "sample_rows.hpp"
 #include "slipwise/online/motion_learner.hpp"
@@ -213,118 +214,111 @@ void bind_online(nb::module_& m) {
   bind_events(m);
   bind_odometry(m);
   bind_surface_events(m);
-  nb::class_<MotionLearner>(m, "MotionLearner", "Learns a motion model from one measurement at a time.")
+  nb::class_<Learner>(m, "MotionLearner", "Learns a motion model from one measurement at a time.")
       .def(nb::init<const LearnerSettings&>(), "settings"_a)
-      .def("start_run", &MotionLearner::start_run)
-      .def("end_run", &MotionLearner::end_run)
-      .def(
-          "push_command",
-          [](MotionLearner& learner, double t, double v, double omega, double vy) {
-            learner.push_command(t, {.v = v, .vy = vy, .omega = omega});
-          },
-          "t"_a, "v"_a, "omega"_a, "vy"_a)
-      .def(
-          "push_wheels",
-          [](MotionLearner& learner, double t, double v, double omega, double vy) {
-            learner.push_wheels(t, {.v = v, .vy = vy, .omega = omega});
-          },
-          "t"_a, "v"_a, "omega"_a, "vy"_a)
-      .def(
-          "push_pose",
-          [](MotionLearner& learner, double t, double x, double y, double yaw, long frame, double std_xy,
-             double std_yaw, bool learned, std::size_t source, std::size_t fix) {
-            learner.push_pose({.t = t,
-                               .x = x,
-                               .y = y,
-                               .yaw = yaw,
-                               .frame = frame,
-                               .std = {std_xy, std_yaw},
-                               .source = source,
-                               .fix = pose_fix(fix)},
-                              learned);
-          },
-          "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a, "std_xy"_a = 0.0, "std_yaw"_a = 0.0, "learned"_a = true,
-          "source"_a = 0, "fix"_a = 0)
-      .def(
-          "push_position",
-          [](MotionLearner& learner, double t, double x, double y, long frame, double std_xy, bool learned,
-             std::size_t source, std::size_t fix) {
-            learner.push_pose({.t = t,
-                               .x = x,
-                               .y = y,
-                               .yaw = 0.0,
-                               .frame = frame,
-                               .std = {.xy = std_xy},
-                               .source = source,
-                               .fix = pose_fix(fix),
-                               .position = true},
-                              learned);
-          },
-          "t"_a, "x"_a, "y"_a, "frame"_a, "std_xy"_a = 0.0, "learned"_a = true, "source"_a = 0, "fix"_a = 0,
-          "A position without a heading, which is taken from the course of its path.")
-      .def("push_gyro", &MotionLearner::push_gyro, "t"_a, "rate"_a)
-      .def_prop_ro("gyro_bias", &MotionLearner::gyro_bias, "Of the gyro [rad/s], and its standard deviation.")
-      .def_prop_ro(
-          "sources",
-          [](const MotionLearner& learner) { return learned_sources(learner.sources(), learner.noise_scale()); },
-          "What is known of each source of poses, where there are several.")
-      .def("push_attitude", &MotionLearner::push_attitude, "t"_a, "roll"_a, "pitch"_a)
-      .def_prop_ro("attitude_mounting", &MotionLearner::attitude_mounting,
+      .def("start_run", locked(&MotionLearner::start_run))
+      .def("end_run", locked(&MotionLearner::end_run))
+      .def("push_command", locked([](MotionLearner& learner, double t, double v, double omega, double vy) {
+             learner.push_command(t, {.v = v, .vy = vy, .omega = omega});
+           }),
+           "t"_a, "v"_a, "omega"_a, "vy"_a)
+      .def("push_wheels", locked([](MotionLearner& learner, double t, double v, double omega, double vy) {
+             learner.push_wheels(t, {.v = v, .vy = vy, .omega = omega});
+           }),
+           "t"_a, "v"_a, "omega"_a, "vy"_a)
+      .def("push_pose",
+           locked([](MotionLearner& learner, double t, double x, double y, double yaw, long frame, double std_xy,
+                     double std_yaw, bool learned, std::size_t source, std::size_t fix) {
+             learner.push_pose({.t = t,
+                                .x = x,
+                                .y = y,
+                                .yaw = yaw,
+                                .frame = frame,
+                                .std = {std_xy, std_yaw},
+                                .source = source,
+                                .fix = pose_fix(fix)},
+                               learned);
+           }),
+           "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a, "std_xy"_a = 0.0, "std_yaw"_a = 0.0, "learned"_a = true,
+           "source"_a = 0, "fix"_a = 0)
+      .def("push_position",
+           locked([](MotionLearner& learner, double t, double x, double y, long frame, double std_xy, bool learned,
+                     std::size_t source, std::size_t fix) {
+             learner.push_pose({.t = t,
+                                .x = x,
+                                .y = y,
+                                .yaw = 0.0,
+                                .frame = frame,
+                                .std = {.xy = std_xy},
+                                .source = source,
+                                .fix = pose_fix(fix),
+                                .position = true},
+                               learned);
+           }),
+           "t"_a, "x"_a, "y"_a, "frame"_a, "std_xy"_a = 0.0, "learned"_a = true, "source"_a = 0, "fix"_a = 0,
+           "A position without a heading, which is taken from the course of its path.")
+      .def("push_gyro", locked(&MotionLearner::push_gyro), "t"_a, "rate"_a)
+      .def_prop_ro("gyro_bias", locked(&MotionLearner::gyro_bias), "Of the gyro [rad/s], and its standard deviation.")
+      .def_prop_ro("sources", locked([](const MotionLearner& learner) {
+                     return learned_sources(learner.sources(), learner.noise_scale());
+                   }),
+                   "What is known of each source of poses, where there are several.")
+      .def("push_attitude", locked(&MotionLearner::push_attitude), "t"_a, "roll"_a, "pitch"_a)
+      .def_prop_ro("attitude_mounting", locked(&MotionLearner::attitude_mounting),
                    "How the sensor of roll and pitch sits on the robot.")
-      .def(
-          "push", [](MotionLearner& learner, const Recording& run) { push(learner, run); }, "run"_a,
-          nb::call_guard<nb::gil_scoped_release>(), "Pushes recorded streams in the order of their stamps.")
-      .def("events", &MotionLearner::events, "What happened since the last call.")
-      .def_prop_ro("dropped_events", &MotionLearner::dropped_events)
-      .def(
-          "predict",
-          [](MotionLearner& learner, const Rows& future, double horizon, double embargo) {
-            return learner.predict(samples(future, "future inputs"), horizon, embargo);
-          },
-          "future"_a, "horizon"_a, "embargo"_a)
-      .def("odometry", &MotionLearner::odometry,
+      .def("push", locked([](MotionLearner& learner, const Recording& run) {
+             const nb::gil_scoped_release released;
+             push(learner, run);
+           }),
+           "run"_a, "Pushes recorded streams in the order of their stamps.")
+      .def("events", locked(&MotionLearner::events), "What happened since the last call.")
+      .def_prop_ro("dropped_events", locked(&MotionLearner::dropped_events))
+      .def("predict", locked([](MotionLearner& learner, const Rows& future, double horizon, double embargo) {
+             return learner.predict(samples(future, "future inputs"), horizon, embargo);
+           }),
+           "future"_a, "horizon"_a, "embargo"_a)
+      .def("odometry", locked(&MotionLearner::odometry),
            "Where the robot is at the newest measurement; None before the first pose of the run.")
-      .def("motion_monitor", &MotionLearner::motion_monitor,
+      .def("motion_monitor", locked(&MotionLearner::motion_monitor),
            "Whether the robot moves as its inputs and the learned model say it must.")
-      .def("model", &MotionLearner::model, "What was learned of all that was pushed.")
-      .def("find_limits", &MotionLearner::find_limits, "wheel_separation"_a, nb::call_guard<nb::gil_scoped_release>(),
+      .def("model", locked(&MotionLearner::model), "What was learned of all that was pushed.")
+      .def("find_limits", locked([](const MotionLearner& learner, double wheel_separation) {
+             const nb::gil_scoped_release released;
+             return learner.find_limits(wheel_separation);
+           }),
+           "wheel_separation"_a,
            "Looks for limits of the actuator; None where there are too few wheel speeds beside commands.")
-      .def("forget", &MotionLearner::forget, "fraction"_a)
-      .def(
-          "start_drive",
-          [](MotionLearner& learner, const std::string& label, const std::string& date) {
-            learner.start_drive({.label = label, .date = date});
-          },
-          "label"_a = "", "date"_a = "", "Another drive begins, on a surface that is remembered or a new one.")
-      .def("cue_terrain", &MotionLearner::cue_terrain, "answer"_a, "A sensor says what the terrain is now.")
-      .def("cue_surface", &MotionLearner::cue_surface, "label"_a = "",
+      .def("forget", locked(&MotionLearner::forget), "fraction"_a)
+      .def("start_drive", locked([](MotionLearner& learner, const std::string& label, const std::string& date) {
+             learner.start_drive({.label = label, .date = date});
+           }),
+           "label"_a = "", "date"_a = "", "Another drive begins, on a surface that is remembered or a new one.")
+      .def("cue_terrain", locked(&MotionLearner::cue_terrain), "answer"_a, "A sensor says what the terrain is now.")
+      .def("cue_surface", locked(&MotionLearner::cue_surface), "label"_a = "",
            "The surface changes now: to the one of this name, or to another where it is empty.")
-      .def("completed", &MotionLearner::completed, "A copy whose run has ended.")
-      .def("probable_surfaces", &MotionLearner::probable_surfaces,
+      .def("completed", locked(&MotionLearner::completed), "A copy whose run has ended.")
+      .def("probable_surfaces", locked(&MotionLearner::probable_surfaces),
            "How probable each surface is to be the one under the robot; nothing where none are remembered.")
-      .def("surfaces", &MotionLearner::surfaces, "The surfaces that are remembered, as they are known now.")
-      .def(
-          "on_surface",
-          [](const MotionLearner& learner, const Surface& surface, std::size_t structure) {
-            return learner.on_surface(surface, structure_of(structure));
-          },
-          "surface"_a, "structure"_a, "Slip on one of them in the terms of a structure; None where it has no memory.")
-      .def(
-          "slip_now",
-          [](const MotionLearner& learner, std::size_t structure) { return learner.slip_now(structure_of(structure)); },
-          "structure"_a, "The same of the surface that is driven on, whether surfaces are remembered or not.")
-      .def("begin_with", &MotionLearner::begin_with, "known"_a, "law"_a, "wheels"_a,
+      .def("surfaces", locked(&MotionLearner::surfaces), "The surfaces that are remembered, as they are known now.")
+      .def("on_surface", locked([](const MotionLearner& learner, const Surface& surface, std::size_t structure) {
+             return learner.on_surface(surface, structure_of(structure));
+           }),
+           "surface"_a, "structure"_a, "Slip on one of them in the terms of a structure; None where it has no memory.")
+      .def("slip_now", locked([](const MotionLearner& learner, std::size_t structure) {
+             return learner.slip_now(structure_of(structure));
+           }),
+           "structure"_a, "The same of the surface that is driven on, whether surfaces are remembered or not.")
+      .def("begin_with", locked(&MotionLearner::begin_with), "known"_a, "law"_a, "wheels"_a,
            "Begins with what another learner knew, before anything was learned.")
-      .def("add_surfaces", &MotionLearner::add_surfaces, "other"_a,
+      .def("add_surfaces", locked(&MotionLearner::add_surfaces), "other"_a,
            "Takes in the surfaces of another learner of the same robot; returns their names here.")
-      .def("surface_events", &MotionLearner::surface_events, "What happened to them since the last call.")
-      .def(
-          "save", [](const MotionLearner& learner) { return bytes_of(learner.save()); }, "All of it as bytes.")
+      .def("surface_events", locked(&MotionLearner::surface_events), "What happened to them since the last call.")
+      .def("save", locked([](const MotionLearner& learner) { return bytes_of(learner.save()); }), "All of it as bytes.")
       .def_static(
-          "load", [](const nb::bytes& saved) { return MotionLearner::load(view_of(saved)); }, "saved"_a,
+          "load", [](const nb::bytes& saved) { return Learner(MotionLearner::load(view_of(saved))); }, "saved"_a,
           "The learner whose bytes these are.")
-      .def_prop_ro("settings", [](const MotionLearner& learner) { return learner.settings(); })
-      .def_prop_ro("newest", &MotionLearner::newest);
+      .def_prop_ro("settings", locked([](const MotionLearner& learner) { return learner.settings(); }))
+      .def_prop_ro("newest", locked(&MotionLearner::newest));
 }
 
 }  // namespace slipwise::bindings

@@ -81,4 +81,10 @@ void refuse(std::string_view wrong) {
                               "; save it with this version of slipwise and pass all of its bytes unchanged");
 }
 
+void require(bool holds, std::string_view wrong) {
+  if (!holds) {
+    refuse("malformed: " + std::string(wrong));
+  }
+}
+
 }  // namespace slipwise::archive

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kLongestLeg = 0.5;  // [s] so that a prediction need not begin at the last pose, however old that is
 constexpr double kMostLegs = 60.0;   // [s] before which one leg is as good as many
+constexpr double kLost = 3600.0;     // [s] without a pose, after which nobody knows where the robot is
 constexpr double kUnasked = 10.0;    // [s] of poses that are kept for somebody who asks
 constexpr double kGate = 25.0;       // normalised square beyond which a pose is rejected: one in 10^5
 constexpr int kAgree = 3;            // poses that agree with a rejected one until it is followed
@@ -70,6 +71,11 @@ void PoseFilter::push(const MeasuredPose& pose) {
   MeasuredPose with_ratio = pose;
   with_ratio.std_ratio = accuracy_.ratio(pose.std);
   const bool late = !timer_.push(pose, settings_.late_factor);
+  if (!poses_.empty() && pose.t - poses_.back().pose.t > kLost) {
+    moments_.clear();
+    first_ += poses_.size();
+    poses_.clear();
+  }
   poses_.push_back({with_ratio, late});
   while (!moments_.empty() && moments_.back().main.t >= pose.t) {
     moments_.pop_back();
@@ -258,10 +264,10 @@ void PoseFilter::trim(double t) {
 
 std::optional<SensorPose> PoseFilter::at(double t, const Legs& legs) {
   asked_ = t;
-  work(legs);
-  if (moments_.empty()) {
+  if (poses_.empty() || t - poses_.back().pose.t > kLost) {
     return std::nullopt;
   }
+  work(legs);
   double end = leg_end(moments_.back().main.t, t);
   while (end < t) {
     Moment moment = moments_.back();

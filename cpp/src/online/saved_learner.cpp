@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A learner as bytes, and back.
 #include <algorithm>
+#include <array>
 #include <variant>
 
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/archive/reader.hpp"
 #include "slipwise/archive/writer.hpp"
+#include "slipwise/online/loaded_values.hpp"
 #include "slipwise/online/motion_learner.hpp"
 
 namespace slipwise {
@@ -16,13 +18,21 @@ std::string MotionLearner::save() const {
   return archive::sealed(writer.bytes());
 }
 
-/// What a prediction looks up without asking.
+/// Against what a learner of the same settings begins with, and what a prediction looks up without asking.
 void MotionLearner::check_loaded() const {
+  const MotionLearner made(settings_);
+  stream_.check_loaded(made.stream_);
+  hypotheses_.check_loaded(made.hypotheses_);
+  sources_.check_loaded(made.sources_);
   const std::size_t horizons = settings_.stream.horizons.size();
   const auto complete = [](const Knowledge& known) { return known.motion && known.slip && known.disturbance; };
+  const std::size_t classes = kPoseFixes * std::max<std::size_t>(1, settings_.stream.sources.size());
+  const auto are_known = [&](const std::array<std::size_t, 2>& each) { return each[0] < classes && each[1] < classes; };
   const auto is_target = [&](const StreamItem& item) {
     const auto* target = std::get_if<TargetSegment>(&item);
-    return target == nullptr || target->horizon < horizons;
+    const auto* source = std::get_if<SourceSegment>(&item);
+    return (target == nullptr || (target->horizon < horizons && are_known(target->classes))) &&
+           (source == nullptr || (source->source < settings_.stream.sources.size() && are_known(source->classes)));
   };
   if (known_.empty() || !std::ranges::all_of(known_, complete) || errors_.size() != horizons ||
       held_out_.size() != horizons || !std::ranges::all_of(waiting_, is_target)) {
@@ -31,7 +41,7 @@ void MotionLearner::check_loaded() const {
 }
 
 MotionLearner MotionLearner::load(std::string_view saved) {
-  archive::Reader reader(archive::opened(saved));
+  archive::CheckedReader<LoadedValues> reader(archive::opened(saved));
   MotionLearner learner{LearnerSettings{}};
   reader(learner);
   reader.finish();

@@ -201,6 +201,11 @@ class MotionLearner(Measurements, RememberedSurfaces):
         return self.judged_model(limits=limits)[0]
 
     @property
+    def learned(self) -> bool:
+        """Whether anything was learned yet, so that there is a model to judge."""
+        return bool(self._core.model().segments)
+
+    @property
     def positions(self) -> bool:
         """Whether it learns from positions, and not from poses."""
         return self._positions
@@ -312,6 +317,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             split = _LENGTH_BYTES + int.from_bytes(body[:_LENGTH_BYTES], "little")
             facts = json.loads(body[_LENGTH_BYTES:split])
             core = _core.MotionLearner.load(body[split:])
+            begun = _core.MotionLearner(core.settings).save()
             settings = make_settings(facts["settings"], where="saved settings")
             learner = cls(
                 facts["input"],
@@ -321,11 +327,13 @@ class MotionLearner(Measurements, RememberedSurfaces):
                 sources=[str(name) for name in facts.get("sources", [])],
                 gyro_alone=bool(facts.get("gyro_alone")),
             )
+            if learner._core.save() != begun:
+                raise ValueError("it is of other settings than it says")
             if facts.get("start"):
                 learner._start = parse_model(facts["start"], where="saved model")
             learner._wheel_step = WheelStep(*facts.get("wheel_step", ()))
             learner._runs, learner._wheels = [str(run) for run in facts["runs"]], bool(facts["wheels"])
-        except (ValueError, TypeError, KeyError) as problem:
+        except (ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError) as problem:
             raise SettingsError(f"the saved learner cannot be loaded: {problem}") from problem
         learner._core = core
         return learner

@@ -22,4 +22,7 @@ std::string_view opened(std::string_view blob);
 /// \throws std::invalid_argument whose message says that the saved state is `wrong`, and what to do.
 [[noreturn]] void refuse(std::string_view wrong);
 
+/// Refuses a state in which something does not hold: `wrong` says what is the case instead.
+void require(bool holds, std::string_view wrong);
+
 }  // namespace slipwise::archive

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <typeindex>
 #include <utility>
 
@@ -18,10 +19,16 @@
 
 namespace slipwise::archive {
 
-/// Reads into each value that it is called with. \throws std::invalid_argument where the bytes are no such values.
-class Reader {
+/// Of values of which nothing more has to hold than that the bytes have their form.
+struct Unchecked {};
+
+/// Reads into each value that it is called with, and lets `Checks` refuse it: `Checks::check(std::type_identity<T>,
+/// const T&)` says what has to hold of a struct. A class with private members checks itself where its members are
+/// named. \throws std::invalid_argument where the bytes are no such values.
+template <class Checks>
+class CheckedReader {
  public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+  explicit CheckedReader(std::string_view bytes) : bytes_(bytes) {}
 
   template <class... T>
   void operator()(T&... values) {
@@ -68,11 +75,20 @@ class Reader {
       read_matrix(value);
     } else if constexpr (Defined<T>) {
       value = make<T>();
-    } else if constexpr (Listed<T, Reader>) {
+    } else if constexpr (Listed<T, CheckedReader>) {
       T::archive(value, *this);
+      check(value);
     } else {
       static_assert(Aggregate<T>, "name the members of the class in archive()");
       with_members(value, [this](auto&... members) { (*this)(members...); });
+      check(value);
+    }
+  }
+
+  template <class T>
+  static void check(const T& value) {
+    if constexpr (requires { Checks::check(std::type_identity<T>{}, value); }) {
+      Checks::check(std::type_identity<T>{}, value);
     }
   }
 
@@ -99,7 +115,9 @@ class Reader {
 
   template <class... M, Aggregate T>
   T make_aggregate(const std::tuple<M...>* /*members*/, const T* /*type*/) {
-    return T{make<M>()...};  // braces: from left to right
+    T value{make<M>()...};  // braces: from left to right
+    check(value);
+    return value;
   }
 
   template <class T>
@@ -207,5 +225,7 @@ class Reader {
   std::string_view bytes_;
   std::vector<std::pair<std::type_index, std::shared_ptr<const void>>> shared_;
 };
+
+using Reader = CheckedReader<Unchecked>;
 
 }  // namespace slipwise::archive

@@ -70,6 +70,8 @@ class BatchSearch {
   /// What was found; the search must be over.
   BatchFit result() &&;
   const std::vector<BatchDatum>& data() const { return data_; }
+  /// \throws std::invalid_argument where a loaded one is not a search of the model over so many data.
+  void check_loaded(const MotionModel& model, std::size_t data) const;
 
   /// Names what is saved.
   template <class Self, class Archive>

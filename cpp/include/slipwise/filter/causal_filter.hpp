@@ -66,6 +66,9 @@ class CausalFilter {
   Eigen::Vector3d noise_scale() const { return state_.noise_scale.value(); }
   const NoiseSettings& noise() const { return settings_.noise; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const CausalFilter& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

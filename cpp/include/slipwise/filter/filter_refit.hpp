@@ -32,6 +32,9 @@ class FilterRefit {
   /// What is known now; nothing where the fit failed.
   std::optional<FilterState> result() &&;
 
+  /// \throws std::invalid_argument where a loaded one does not fit the model, or the segments that are kept.
+  void check_loaded(const MotionModel& model, std::size_t kept) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -44,6 +44,9 @@ class ScoreCovariance {
   /// all other parameters; what comes from the prior stays.
   Eigen::VectorXd std_factors(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& covariance) const;
 
+  /// \throws std::invalid_argument where a loaded one does not fit so many parameters.
+  void check_loaded(Eigen::Index size) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -57,6 +57,9 @@ class CascadedModel {
   ModelAverage& slip() { return slip_; }
   const ModelAverage& slip() const { return slip_; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const CascadedModel& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

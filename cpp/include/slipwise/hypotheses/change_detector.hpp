@@ -61,6 +61,10 @@ class ChangeDetector {
   /// Leaves out of the next tests what was measured before.
   void restart() { recent_.clear(); }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, which is given so many `changes`, could
+  /// have become.
+  void check_loaded(const ChangeDetector& made, Eigen::Index changes) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

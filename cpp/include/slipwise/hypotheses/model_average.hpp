@@ -109,6 +109,12 @@ class ModelAverage {
   const ChangeTest& change() const { return change_; }
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const ModelAverage& made) const;
+
+  /// \throws std::invalid_argument where a loaded one does not fit the bases.
+  void check_memory(const SurfaceMemory& memory) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -129,6 +129,9 @@ class MotionHypotheses {
   /// Segments learned.
   std::size_t count() const { return count_; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const MotionHypotheses& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -93,6 +93,10 @@ class SurfaceBank {
                                std::size_t leader);
   const SurfaceSettings& settings() const { return settings_; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become
+  /// beside these averages.
+  void check_loaded(const SurfaceBank& made, const std::array<const ModelAverage*, kAverages>& averages) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -35,6 +35,9 @@ class SurfaceEvidence {
   /// them in time, or begins another run.
   double add(const MotionModel& model, const InputHistory& inputs, const Segment& segment);
 
+  /// \throws std::invalid_argument where a loaded one does not fit the model.
+  void check_loaded(const MotionModel& model) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -37,6 +37,9 @@ class ActuatorChannel {
   /// Variance of one wheel speed's noise, as learned [(m/s)^2 or (rad/s)^2].
   double noise_variance() const { return size_; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const ActuatorChannel& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

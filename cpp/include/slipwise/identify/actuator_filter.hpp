@@ -45,6 +45,9 @@ class ActuatorFilter {
   Estimate estimate() const;
   const Eigen::VectorXd& prior_std() const { return prior_std_; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const ActuatorFilter& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -40,6 +40,9 @@ class CurveBank {
   /// Of the weights, as if none were bounded: rather too large.
   Eigen::MatrixXd covariance() const;
 
+  /// \throws std::invalid_argument where a loaded one is none that `made` could have become.
+  void check_loaded(const CurveBank& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
@@ -69,6 +72,9 @@ class RestFilter {
   double lag() const;
   /// What was left lately; 0 at first.
   double rest() const { return past_.empty() ? 0.0 : past_.back().second; }
+
+  /// \throws std::invalid_argument where a loaded one is none that `made` could have become.
+  void check_loaded(const RestFilter& made) const;
 
   /// Names what is saved.
   template <class Self, class Archive>
@@ -112,6 +118,9 @@ class CarCurveFilter {
   CarCurves straight() const;
   /// What it does now, followed by the curves and set right by what was measured.
   KnownMotion motion() const;
+
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const CarCurveFilter& made) const;
 
   /// Names what is saved.
   template <class Self, class Archive>

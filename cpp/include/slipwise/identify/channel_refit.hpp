@@ -25,6 +25,9 @@ class ChannelFit {
   bool advance(std::span<const ChannelWindow> past);
   const ChannelRun& best() const { return present(best_); }
 
+  /// \throws std::invalid_argument where a loaded one is none of the channel `made` and so many windows.
+  void check_loaded(const ActuatorChannel& made, std::size_t past) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
@@ -55,6 +58,9 @@ class ChannelRefit {
   bool advance(std::span<const ChannelWindow> past);
   /// What is known after all windows; the refit must have no more to do.
   const ActuatorChannel& result() const { return channel_; }
+
+  /// \throws std::invalid_argument where a loaded one is none of the channel `made` and so many windows.
+  void check_loaded(const ActuatorChannel& made, std::size_t past) const;
 
   /// Names what is saved.
   template <class Self, class Archive>

@@ -73,6 +73,9 @@ class ChannelFilter {
   NormalEquations equations() const { return {information_, gradient_}; }
   double cost() const { return cost_; }  ///< -2 log posterior of the point
 
+  /// \throws std::invalid_argument where a loaded one does not fit the model.
+  void check_loaded(const ChannelModel& model) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -39,6 +39,10 @@ class GaussNewton {
   const Eigen::VectorXd& best() const { return best_; }
   double cost() const { return cost_; }           ///< of the best
   int iterations() const { return iterations_; }  ///< candidates proposed
+  /// Whether all its steps are of so many parameters, as one that was loaded has to be.
+  bool has_size(Eigen::Index size) const {
+    return candidate_.size() == size && best_.size() == size && (step_.size() == size || fraction_ == 1.0);
+  }
 
   /// Names what is saved.
   template <class Self, class Archive>

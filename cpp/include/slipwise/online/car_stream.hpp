@@ -41,6 +41,9 @@ class CarStream {
   const InputBuffer& given() const { return given_; }
   const CarCurves& curves() const { return known_.back().curves; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const CarStream& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

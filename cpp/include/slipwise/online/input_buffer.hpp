@@ -72,6 +72,9 @@ class InputBuffer {
   /// The samples that act in [start, end], then `future` ones up to `end`, as the core's inputs.
   InputHistory slice(double start, double end, SliceKind kind, const std::vector<InputSample>& future = {}) const;
 
+  /// \throws std::invalid_argument where a loaded one is of other settings than `made`, or not in order.
+  void check_loaded(const InputBuffer& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -42,6 +42,9 @@ class KnownSources {
   /// Segments learned of each.
   const std::vector<std::size_t>& learned() const { return learned_; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const KnownSources& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

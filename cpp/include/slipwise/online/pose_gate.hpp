@@ -57,6 +57,9 @@ class PoseGate {
   /// Another run begins.
   void restart();
 
+  /// \throws std::invalid_argument where a loaded one holds no pose of the frame that it is in.
+  void check_loaded() const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -34,6 +34,9 @@ class PoseTwists {
   /// From which stamp on commands are needed [s]; infinity where there is no need.
   double begins() const;
 
+  /// \throws std::invalid_argument where a loaded one cuts by other rules than `made`.
+  void check_loaded(const PoseTwists& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -103,6 +103,9 @@ class SegmentCutter {
   /// Stamp of the pose from which on the next segment may begin [s]; infinity where none came.
   double begins() const { return poses_.empty() ? std::numeric_limits<double>::infinity() : poses_.front().pose.t; }
 
+  /// \throws std::invalid_argument where a loaded one cuts by other rules than `made`.
+  void check_loaded(const SegmentCutter& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

@@ -136,6 +136,9 @@ class SegmentStream {
   /// What throttle and steering do, where they are the commands.
   std::optional<CarCurves> car_curves() const { return car_ ? std::optional(car_->curves()) : std::nullopt; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
+  void check_loaded(const SegmentStream& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

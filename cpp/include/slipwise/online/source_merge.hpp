@@ -36,6 +36,9 @@ class SourceMerge {
   void restart();
   const std::vector<MergedSegment>& waiting() const { return waiting_; }
 
+  /// \throws std::invalid_argument where a loaded one is none that `made` could have become.
+  void check_loaded(const SourceMerge& made) const;
+
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {

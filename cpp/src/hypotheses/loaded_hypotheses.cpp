@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// What has to hold of averages, surfaces and structures that are loaded.
+#include <algorithm>
+#include <array>
+
+#include "slipwise/archive/bytes.hpp"
+#include "slipwise/archive/same.hpp"
+#include "slipwise/hypotheses/motion_hypotheses.hpp"
+#include "slipwise/linear/present.hpp"
+
+namespace slipwise {
+namespace {
+
+using archive::require;
+
+bool are_weights(const auto& weights) {
+  return std::ranges::all_of(weights, [](double weight) { return weight >= 0.0 && weight <= 2.0; }) &&
+         std::ranges::any_of(weights, [](double weight) { return weight > 0.0; });
+}
+
+bool are_places(const std::vector<Eigen::Index>& places, Eigen::Index size) {
+  return std::ranges::all_of(places, [&](Eigen::Index place) { return 0 <= place && place < size; });
+}
+
+void check_state(const AverageState& state, Eigen::Index size) {
+  require(state.estimate.mean.size() == size && state.prior_std.size() == size &&
+              (state.variance_ratio.size() == 0 || state.variance_ratio.size() == size) &&
+              state.noise_scale.allFinite(),
+          "the state of an average has other parameters than its model");
+}
+
+}  // namespace
+
+void ChangeDetector::check_loaded(const ChangeDetector& made, Eigen::Index changes) const {
+  require(archive::same(settings_, made.settings_) && kinds_ == made.kinds_ &&
+              nominal_.rows() == made.nominal_.rows() && nominal_.cols() == made.nominal_.cols() &&
+              nominal_.allFinite() && !sizes_.empty(),
+          "the test for a change is another one");
+  require(std::ssize(recent_) <= settings_.longest &&
+              std::ranges::all_of(recent_, [&](const Whitened& each) { return each.by_change.cols() == changes; }),
+          "the test for a change has seen other changes");
+}
+
+void SurfaceEvidence::check_loaded(const MotionModel& model) const {
+  const Eigen::Index size = model.size();
+  require(posterior_.estimate.mean.size() == size && posterior_.prior_std.size() == size && are_places(places_, size) &&
+              !under_.empty(),
+          "the evidence for a surface is of other parameters");
+  const Eigen::Index all = size + std::ssize(places_);
+  for (const Under& under : under_) {
+    require(under.nominal.size() == std::ssize(places_) && under.state.size() == all &&
+                under.covariance.rows() == all && under.covariance.cols() == all && under.time_constant > 0.0,
+            "the evidence for a surface does not fit together");
+  }
+}
+
+void ModelAverage::check_memory(const SurfaceMemory& memory) const {
+  require(memory.slips.size() == places_.size() && are_weights(memory.weights), "a surface has other bases");
+  for (std::size_t i = 0; i < memory.slips.size(); ++i) {
+    const MotionModel& model = filters_[i].model();
+    const SurfaceSlip& slip = memory.slips[i];
+    require(slip.mean.size() == model.slip_size() && slip.robot.size() == model.size() - model.slip_size() &&
+                slip.speeds.v > 0.0 && slip.speeds.omega > 0.0,
+            "a surface has other terms than its basis");
+  }
+}
+
+void ModelAverage::check_loaded(const ModelAverage& made) const {
+  const Eigen::Index size = made.model_.size();
+  require(archive::same(model_, made.model_) && places_ == made.places_ && archive::same(settings_, made.settings_) &&
+              archive::same(prior_, made.prior_) && changing_ == made.changing_ && are_weights(weights_),
+          "an average is of other bases or settings");
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    filters_[i].check_loaded(made.filters_[i % made.filters_.size()]);
+  }
+  detector_.check_loaded(made.detector_, std::ssize(changing_));
+  require(0 <= undecided_ && undecided_ <= settings_.change.trial && 0 <= change_.segments &&
+              change_.segments <= settings_.change.longest && std::ssize(before_) <= settings_.change.longest,
+          "an average waits for more than its settings say");
+  std::ranges::for_each(before_, [&](const AverageState& state) { check_state(state, size); });
+  require(!learning_ || (learning_->updates.size() < filters_.size()), "an average has learned more than it has");
+  for (const Recent& recent : recent_) {
+    check_memory(recent.memory);
+    check_state(recent.state, size);
+  }
+  if (parting_) {
+    check_memory(*parting_);
+  }
+  if (!trial_) {
+    return;
+  }
+  const std::size_t sides = trial_->candidates.size();
+  require(sides > 0 && undecided_ == 0 && trial_->evidence.size() == sides && trial_->weights.size() == sides &&
+              trial_->observed.size() == sides && trial_->log_odds.size() == std::ssize(trial_->candidates) &&
+              !trial_->log_odds.array().isNaN().any(),
+          "a trial of surfaces does not fit together");
+  std::ranges::for_each(trial_->evidence, [&](const SurfaceEvidence& each) { each.check_loaded(model_); });
+  require(std::ranges::all_of(
+              trial_->weights,
+              [&](const Eigen::VectorXd& each) { return each.size() == prior_.size() && are_weights(each); }),
+          "a trial of surfaces has other bases");
+}
+
+void SurfaceBank::check_loaded(const SurfaceBank& made,
+                               const std::array<const ModelAverage*, kAverages>& averages) const {
+  require(archive::same(settings_, made.settings_) && (!present_ || *present_ < surfaces_.size()) &&
+              leader_ < kAverages && averages[leader_] != nullptr,
+          "the bank of surfaces names one that is not there");
+  for (const Surface& surface : surfaces_) {
+    for (std::size_t i = 0; i < kAverages; ++i) {
+      require(!surface.memories[i] || averages[i] != nullptr, "a surface is remembered by nobody");
+      if (surface.memories[i]) {
+        averages[i]->check_memory(*surface.memories[i]);
+      }
+    }
+  }
+  for (const ModelAverage* average : averages) {
+    if (average != nullptr && average->trial()) {
+      for (const SurfaceCandidate& candidate : average->trial()->candidates) {
+        require(candidate.kind != SurfaceCandidate::Kind::Known || candidate.place < surfaces_.size(),
+                "a trial is of a surface that is not there");
+      }
+    }
+  }
+}
+
+void CascadedModel::check_loaded(const CascadedModel& made) const {
+  require(archive::same(model_, made.model_) && archive::same(noise_, made.noise_) &&
+              places_of_slip_ == made.places_of_slip_ && places_of_actuator_ == made.places_of_actuator_ &&
+              posterior_ && archive::same(posterior_->model, model_),
+          "a cascade is of another model");
+  slip_.check_loaded(made.slip_);
+  actuator_.check_loaded(made.actuator_);
+}
+
+void MotionHypotheses::check_loaded(const MotionHypotheses& made) const {
+  require(archive::same(settings_, made.settings_) && direct_bases_ == made.direct_bases_ &&
+              direct_.has_value() == made.direct_.has_value() && cascaded_.has_value() == made.cascaded_.has_value() &&
+              are_weights(weights_),
+          "what is learned is not what the settings say");
+  joint_.check_loaded(made.joint_);
+  if (direct_) {
+    direct_->check_loaded(present(made.direct_));
+  }
+  if (cascaded_) {
+    cascaded_->check_loaded(present(made.cascaded_));
+  }
+  bank_.check_loaded(made.bank_, averages_of(*this));
+  const auto there = [&](Structure structure) {
+    return structure == Structure::Joint || structure == Structure::Baseline ||
+           (structure == Structure::Direct && direct_) || (structure == Structure::Cascaded && cascaded_);
+  };
+  for (std::size_t i = 0; i < kStructures; ++i) {
+    require(tried_[i] ? there(static_cast<Structure>(i)) : weights_[i] == 0.0,
+            "a structure is tried that is not there");
+  }
+  require(tried(Structure::Joint) && predicted_.size() <= to_predict_.size() && std::ranges::all_of(to_predict_, there),
+          "a segment is predicted by a structure that is not there");
+}
+
+}  // namespace slipwise

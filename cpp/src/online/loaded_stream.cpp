@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What has to hold of streams and sources that are loaded.
+#include <algorithm>
+#include <cmath>
+
+#include "slipwise/archive/bytes.hpp"
+#include "slipwise/archive/same.hpp"
+#include "slipwise/online/known_sources.hpp"
+#include "slipwise/online/segment_stream.hpp"
+
+namespace slipwise {
+namespace {
+
+using archive::require;
+
+bool goes_forward(const auto& all, auto stamp) { return std::ranges::is_sorted(all, {}, stamp); }
+
+}  // namespace
+
+void InputBuffer::check_loaded(const InputBuffer& made) const {
+  require(archive::same(unknown_after_, made.unknown_after_) && goes_forward(samples_, &InputSample::t),
+          "inputs are not in the order of time");
+}
+
+void PoseGate::check_loaded() const {
+  require(accepted_.size() <= 3 && (!given_ || !accepted_.empty()), "the frame of the last pose has no pose");
+}
+
+void SegmentCutter::check_loaded(const SegmentCutter& made) const {
+  require(archive::same(length_, made.length_) && archive::same(rules_, made.rules_) &&
+              whole_frames_ == made.whole_frames_ && archive::same(stride_, made.stride_) &&
+              goes_forward(poses_, [](const TimedPose& timed) { return timed.pose.t; }),
+          "segments are cut by other rules");
+}
+
+void PoseTwists::check_loaded(const PoseTwists& made) const {
+  cutter_.check_loaded(made.cutter_);
+  require(archive::same(sensor_, made.sensor_), "twists are of another sensor");
+}
+
+void CarStream::check_loaded(const CarStream& made) const {
+  given_.check_loaded(made.given_);
+  filter_.check_loaded(made.filter_);
+  require(!known_.empty(), "nothing is known of the car");
+}
+
+void SegmentStream::check_loaded(const SegmentStream& made) const {
+  require(archive::same(settings_, made.settings_) && archive::same(keep_, made.keep_) &&
+              targets_.size() == made.targets_.size() && others_.size() == made.others_.size() &&
+              car_.has_value() == made.car_.has_value(),
+          "a stream is of other settings");
+  commands_.check_loaded(made.commands_);
+  wheels_.check_loaded(made.wheels_);
+  gate_.check_loaded();
+  learned_.check_loaded(made.learned_);
+  slip_.check_loaded(made.slip_);
+  wheel_cutter_.check_loaded(made.wheel_cutter_);
+  twists_.check_loaded(made.twists_);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    targets_[i].check_loaded(made.targets_[i]);
+  }
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    require(archive::same(others_[i].settings, made.others_[i].settings), "a source is of other settings");
+    others_[i].cutter.check_loaded(made.others_[i].cutter);
+    others_[i].gate.check_loaded();
+  }
+  if (car_) {
+    car_->check_loaded(*made.car_);
+  }
+  require(goes_forward(poses_, &MeasuredPose::t) && std::ranges::is_sorted(wheel_stamps_) && !std::isnan(newest_) &&
+              std::ranges::none_of(wheel_stamps_, [](double t) { return !std::isfinite(t); }),
+          "what waits is not in the order of time");
+}
+
+void SourceMerge::check_loaded(const SourceMerge& made) const {
+  require(archive::same(longest_, made.longest_) && seen_.size() == made.seen_.size() &&
+              std::ranges::all_of(waiting_, [&](const MergedSegment& each) { return each.source < seen_.size(); }),
+          "a segment is of a source that is not there");
+}
+
+void KnownSources::check_loaded(const KnownSources& made) const {
+  require(archive::same(settings_, made.settings_) && archive::same(filter_, made.filter_) &&
+              calibrations_.size() == made.calibrations_.size() && seen_until_.size() == made.seen_until_.size() &&
+              learned_.size() == made.learned_.size(),
+          "sources are others than those of the settings");
+  for (std::size_t i = 0; i < calibrations_.size(); ++i) {
+    require(calibrations_[i].estimate().mean.size() == made.calibrations_[i].estimate().mean.size(),
+            "the calibration of a source is of other parameters");
+  }
+  merge_.check_loaded(made.merge_);
+}
+
+}  // namespace slipwise
