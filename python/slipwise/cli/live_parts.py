@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -140,7 +141,9 @@ def open_robot(
     if table.transport == "stdin":
         from slipwise.live.pipe import Pipe
 
-        return Robot(Pipe(sys.stdin, _results(source.results)), table.input or "wheel", "standard input")
+        return Robot(
+            Pipe(sys.stdin.buffer, _results(source.results)), table.input or "wheel", "standard input"
+        )
     if table.transport == "udp":
         from slipwise.live.udp import DEFAULT_ADDRESS, Udp
 
@@ -201,7 +204,10 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
 def _results(path: Path | None) -> Any:
     if path is None:
         return None
-    return sys.stdout if str(path) == "-" else path.open("w", encoding="utf-8")
+    if str(path) == "-":
+        sys.stdout.flush()
+        return os.fdopen(os.dup(sys.stdout.fileno()), "wb", buffering=0)
+    return path.open("wb", buffering=0)
 
 
 def watchers_for(show: Show, table: LiveTable) -> list[Watcher]:
@@ -210,6 +216,8 @@ def watchers_for(show: Show, table: LiveTable) -> list[Watcher]:
     Raises:
         SlipwiseError: an address or a file cannot be used, or a package is missing.
     """
+    from slipwise.live.watch.error_lines import ErrorLines
+
     found: list[Watcher] = []
     headlines = []
     with contextlib.ExitStack() as undo:
@@ -232,10 +240,14 @@ def watchers_for(show: Show, table: LiveTable) -> list[Watcher]:
 
             found.append(Recorder(show.record, name=table.name))
             undo.callback(found[-1].close)
-        if not show.quiet:
-            found.append(_terminal(show, headlines))
+        found.append(ErrorLines(_complain) if show.quiet else _terminal(show, headlines))
         undo.pop_all()
     return found
+
+
+def _complain(text: str) -> None:
+    with contextlib.suppress(OSError):
+        print(f"slipwise: {text}", file=sys.stderr, flush=True)
 
 
 def _terminal(show: Show, headlines: list[str]) -> Watcher:

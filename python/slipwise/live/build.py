@@ -74,7 +74,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
         found = cache.load()
         learner, valid = found.learner, found.valid
         if found.said:
-            said.note(math.nan, found.said)
+            said.note(math.nan, found.said, error=learner is None)
     learner = learner or _new_learner(input_name, settings, before, wheels=transport.wheels)
     learning = Learning(learner, start or before, valid, said)
     rules = rules_for(start, reverse=table.gates.reverse, stale_after=table.gates.stale_after)

@@ -4,20 +4,23 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import json
 import re
 from dataclasses import asdict, dataclass
 from hashlib import sha256
 from pathlib import Path
+from typing import IO
 
 from slipwise import _core
 from slipwise.calibration import Settings
 from slipwise.calibration.motion_learner import MotionLearner
-from slipwise.errors import SettingsError, SlipwiseError
+from slipwise.errors import OutputError, SettingsError
 from slipwise.files import output_errors, read_whole, write_text_whole, write_whole
 from slipwise.models import SCHEMA_VERSION, Model, load_model
 
 MOST_BYTES = 1 << 30
+MOST_STARTS = 2  # that one state may end
 _LENGTH_BYTES = 8  # of what stands before the learner's bytes
 _UNFIT = re.compile(r"[^A-Za-z0-9._-]+")
 
@@ -54,6 +57,9 @@ class Remembered:
 class Cache:
     """A folder with one file of state and the last valid model for each vehicle and input.
 
+    One node at a time has it, until `close` or the end of the process. A state that ended two starts is not
+    tried a third time: a start counts as begun until something was saved or the node ended in order.
+
     Raises:
         SettingsError: the vehicle has no name that a file can bear.
     """
@@ -66,28 +72,43 @@ class Cache:
         self._key = key
         self.state = folder / f"{stem}.state"
         self.model = folder / f"{stem}.yaml"
+        self._starts = folder / f"{stem}.starts"
+        self._lock = folder / f"{stem}.lock"
+        self._held: IO[bytes] | None = None  # the lock file
 
     def save(self, learner: MotionLearner, valid: Model | None) -> None:
         """Write the state, and the last valid model as a file of its own that any tool reads.
 
         Raises:
             OutputError: the disk is full, or the folder cannot be written to.
+            SettingsError: it cannot be judged once it is loaded: the next start would end there.
         """
+        saved = learner.save()
+        try:
+            _check_judged(MotionLearner.load(saved))
+        except Exception as problem:  # whatever it is, the next start would meet it too
+            raise SettingsError(f"it cannot be judged: {problem}", where=str(self.state)) from problem
         if valid is not None:
             write_text_whole(self.model, valid.to_yaml())
         head = json.dumps({"key": asdict(self._key), "valid": valid is not None}).encode()
-        body = _core.sealed(len(head).to_bytes(_LENGTH_BYTES, "little") + head + learner.save())
+        body = _core.sealed(len(head).to_bytes(_LENGTH_BYTES, "little") + head + saved)
         write_whole(self.state, lambda place: _write(place, body))
+        self._starts.unlink(missing_ok=True)
 
     def load(self) -> Remembered:
         """Return what is remembered; what cannot be used is set aside, and said, never raised.
 
         Raises:
-            OutputError: what is unreadable cannot be set aside.
+            OutputError: what is unreadable cannot be set aside, or another node has this cache.
         """
+        self._hold()
         if not self.state.exists():
             return Remembered(None, None, "")
         try:
+            if self._count_start() > MOST_STARTS:
+                return Remembered(
+                    None, None, self._set_aside(f"the cache ended the last {MOST_STARTS} starts")
+                )
             body = _core.opened(read_whole(self.state, most=MOST_BYTES, error=SettingsError))
             split = _LENGTH_BYTES + int.from_bytes(body[:_LENGTH_BYTES], "little")
             head = json.loads(body[_LENGTH_BYTES:split])
@@ -95,10 +116,54 @@ class Cache:
             if other:
                 return Remembered(None, None, self._set_aside(f"the cache is of another {other}"))
             learner = MotionLearner.load(body[split:])
+            _check_judged(learner)
             valid = load_model(self.model) if head["valid"] else None
-        except (SlipwiseError, ValueError, KeyError, TypeError) as problem:
+        except OutputError:
+            raise
+        except Exception as problem:  # whatever it is, learning starts from nothing
             return Remembered(None, None, self._set_aside(f"the cache cannot be read: {problem}"))
         return Remembered(learner, valid, f"goes on from {self.state}")
+
+    def close(self) -> None:
+        """Let another node have it: this one ended in order."""
+        if self._held is not None:
+            with contextlib.suppress(OSError):
+                self._starts.unlink(missing_ok=True)
+            self._held.close()
+            self._held = None
+
+    def _hold(self) -> None:
+        """Lock the cache; the system lifts the lock when the process ends, however it does.
+
+        Raises:
+            OutputError: another node has it, or the folder cannot be written to.
+        """
+        if self._held is not None:
+            return
+        with output_errors(self._lock):
+            self._lock.parent.mkdir(parents=True, exist_ok=True)
+            held = self._lock.open("ab")
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as problem:
+            held.close()
+            raise OutputError(
+                "another node has this cache",
+                where=str(self.state),
+                advice="give each robot a --vehicle, or stop it",
+            ) from problem
+        except OSError:
+            pass  # a file system without locks gives none
+        self._held = held
+
+    def _count_start(self) -> int:
+        """Return how often this state was started with, this time included, and nothing was saved."""
+        try:
+            starts = int(self._starts.read_text(encoding="ascii")) + 1
+        except (OSError, ValueError):
+            starts = 1
+        write_text_whole(self._starts, f"{starts}\n")
+        return starts
 
     def _difference(self, found: dict[str, object]) -> str:
         mine = asdict(self._key)
@@ -111,7 +176,14 @@ class Cache:
             self.state.replace(aside)
             with contextlib.suppress(FileNotFoundError):
                 self.model.replace(self.model.with_name(self.model.name + ".set-aside"))
+            self._starts.unlink(missing_ok=True)
         return f"{why}; it was moved to {aside}, learning starts from nothing"
+
+
+def _check_judged(learner: MotionLearner) -> None:
+    """Raise whatever a judgement of what was learned raises."""
+    if learner.learned:
+        learner.judged_model(limits=False)
 
 
 def _write(place: Path, body: bytes) -> None:

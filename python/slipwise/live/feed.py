@@ -22,6 +22,7 @@ class Feed:
         self._samples = samples
         self._stopped, self._done = threading.Event(), threading.Event()
         self._thread: threading.Thread | None = None
+        self._failure: Exception | None = None
 
     def subscribe(self, on_sample: OnSample) -> None:
         """Begin to deliver, in a thread."""
@@ -37,7 +38,13 @@ class Feed:
 
     @property
     def finished(self) -> bool:
-        """Whether all samples were delivered."""
+        """Whether all samples were delivered.
+
+        Raises:
+            Exception: what ended the samples early.
+        """
+        if self._done.is_set() and self._failure is not None:
+            raise self._failure
         return self._done.is_set()
 
     @property
@@ -52,8 +59,12 @@ class Feed:
             self._thread.join(timeout=2.0)
 
     def _deliver(self, on_sample: OnSample) -> None:
-        for sample in self._samples:
-            if self._stopped.is_set():
-                return
-            on_sample(sample)
-        self._done.set()
+        try:
+            for sample in self._samples:
+                if self._stopped.is_set():
+                    return
+                on_sample(sample)
+        except Exception as problem:  # the node's thread raises it
+            self._failure = problem
+        finally:
+            self._done.set()

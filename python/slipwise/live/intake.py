@@ -16,6 +16,8 @@ from slipwise.live.samples import Command, DriveStart, Gyro, Pose, SurfaceCue, T
 from slipwise.live.surface_watch import SurfaceWatch
 from slipwise.logs.clock_steps import set_back_words
 
+MOST_FRAMES = 1000  # whose names are kept
+
 
 class Intake:
     """Pushes samples into a learner. Inputs always count; poses are learned from while the gates are open."""
@@ -36,6 +38,7 @@ class Intake:
         self.surfaces = SurfaceWatch(learner, said)
         self.turning = Turning()
         self._frames: dict[str, int] = {}
+        self._next_frame = 0
         self.newest_input: Twist | None = None
         self.newest_pose: Pose | None = None
         self.why_not = ""  # nothing is learned now
@@ -112,6 +115,9 @@ class Intake:
         if not self._learner.is_first(pose.source):
             self._push_other(pose)
             return
+        if math.isnan(pose.yaw) and not self._learner.positions:
+            self._said.count("a pose without a heading, where poses are learned from")
+            return
         self.newest_pose = pose
         self._follow_gates(pose.t)
         learned = not self.why_not
@@ -120,8 +126,7 @@ class Intake:
         if pose.roll is not None and pose.pitch is not None:
             self._learner.push_attitude(pose.t, pose.roll, pose.pitch)
             self._say_mounting(pose.t)
-        number = self._frames.setdefault(pose.frame, len(self._frames))
-        self._learn(pose, number, learned=learned)
+        self._learn(pose, self._frame_number(pose.frame), learned=learned)
 
     def _say_mounting(self, t: float) -> None:
         """Say how the sensor of roll and pitch is mounted, where that is another than was said."""
@@ -132,8 +137,17 @@ class Intake:
 
     def _push_other(self, pose: Pose) -> None:
         """A further source: where the gates are closed nothing is learned from it either."""
-        number = self._frames.setdefault(f"{pose.source} {pose.frame}", len(self._frames))
+        number = self._frame_number(f"{pose.source} {pose.frame}")
         self._learn(pose, number, learned=not self._gates.why(pose.t))
+
+    def _frame_number(self, name: str) -> int:
+        """The number of a frame; of more than are kept, the oldest is a new one where it comes again."""
+        if name not in self._frames:
+            if len(self._frames) >= MOST_FRAMES:
+                self._frames.pop(next(iter(self._frames)))
+            self._frames[name] = self._next_frame
+            self._next_frame += 1
+        return self._frames[name]
 
     def _learn(self, pose: Pose, number: int, *, learned: bool) -> None:
         learner, source = self._learner, pose.source

@@ -24,7 +24,7 @@ from slipwise.live.outputs import (
 from slipwise.live.samples import Command, Override, Pose, Request, RunStart, Sample, SurfaceCue, Wheels
 from slipwise.logs.fixes import FIXES, fix_number
 
-MOST_CHARACTERS = 10_000  # of a line
+MOST_BYTES = 10_000  # of a line
 
 _COMMAND = ("cmd_v", "cmd_omega")
 _WHEELS = ("odo_v", "odo_omega")
@@ -51,8 +51,8 @@ class LineReader:
         text = line.strip()
         if not text or text.startswith("#"):
             return []
-        if len(text) > MOST_CHARACTERS:
-            raise LogError("a line is too long", advice=f"write {MOST_CHARACTERS} characters at most")
+        if len(text) > MOST_BYTES:
+            raise LogError("a line is too long", advice=f"write {MOST_BYTES} bytes at most")
         if text.startswith("{"):
             return _of_json(text)
         cells = _cells(text)

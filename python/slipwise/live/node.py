@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import json
+import logging
 import math
 import threading
 import time
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -24,7 +26,7 @@ from slipwise.live.move_adviser import MoveAdviser
 from slipwise.live.odometry import odometry_of, path_ahead
 from slipwise.live.outputs import ModelText, Odometry, Output, ParameterNow, Path
 from slipwise.live.said import Said
-from slipwise.live.samples import Override, Pose, Request, RunStart, Sample, SurfaceCue
+from slipwise.live.samples import Override, Pose, Request, RunStart, Sample, SurfaceCue, Unusable
 from slipwise.live.status import DrivenPath, Identity, Now, parameters_now, status_of
 from slipwise.live.transport import Transport
 from slipwise.live.watch.watcher import Watcher
@@ -37,6 +39,8 @@ ODOMETRY_EVERY = 0.02  # s of stamps
 STATUS_EVERY = 0.2  # s of the wall clock
 NOTICES_EVERY = 1.0  # s of the wall clock
 AHEAD = 2.0  # s that the present command is predicted
+
+_log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,7 @@ class LiveNode:
         self._parameters: tuple[ParameterNow, ...] = ()
         self._next = dict.fromkeys(("status", "notices", "save"), 0.0)  # s of the wall clock
         self._given: tuple[Model, str] | None = None  # the model that others have, and which it is
+        self._unsaved: SlipwiseError | None = None  # why the state was not saved the last time
 
     def stop(self) -> None:
         """End the loop; may be called from any thread, or a signal."""
@@ -80,7 +85,7 @@ class LiveNode:
         """Take samples until the transport has no more, or somebody stops the node; then save.
 
         Raises:
-            SlipwiseError: the transport cannot be used.
+            SlipwiseError: the transport cannot be used, or fails; or the state could not be saved at the end.
         """
         parts = self._parts
         self._next["save"] = time.monotonic() + parts.save_every
@@ -89,10 +94,26 @@ class LiveNode:
             while not self._stopped.is_set():
                 if not self._take_some() and parts.transport.finished and not self._waiting:
                     break
-                self._tick()
+                self._survive("the state of the node", self._tick)
         finally:
             parts.transport.close()
             self._finish()
+        if self._unsaved is not None:
+            raise self._unsaved
+
+    def _survive(self, what: str, step: Callable[[], object]) -> object:
+        """Do a step; nothing that a sample, a request or an output causes ends the node.
+
+        It is counted, and said once of each kind.
+        """
+        try:
+            return step()
+        except Exception as problem:
+            said, kind = self._parts.said, f"{what}: {type(problem).__name__}"
+            said.count(f"{what} failed")
+            said.once(self._parts.intake.newest, kind, f"{what} failed: {str(problem) or kind}")
+            _log.debug("%s failed", what, exc_info=True)
+            return None
 
     def _arrive(self, sample: Sample) -> None:
         """Called from the transport's threads."""
@@ -103,11 +124,12 @@ class LiveNode:
     def _take_some(self) -> bool:
         """Take what waits, up to a number; return whether there was anything."""
         if not self._waiting:
-            if not self._look_for_moves():
+            if not self._survive("the search for moves", self._look_for_moves):
                 time.sleep(REST)  # a lock for each sample would cost more than what is done with it
             return False
         for _ in range(min(len(self._waiting), AT_ONCE)):
-            self._take(self._waiting.popleft())
+            sample = self._waiting.popleft()
+            self._survive(_name_of(sample), partial(self._take, sample))
         return True
 
     def _look_for_moves(self, *, whole: bool = False) -> bool:
@@ -125,6 +147,10 @@ class LiveNode:
         parts = self._parts
         if isinstance(sample, Request):
             self._answer(sample)
+            return
+        if isinstance(sample, Unusable):
+            parts.said.count(sample.reason)
+            parts.said.once(parts.intake.newest, sample.kind, sample.text)
             return
         if isinstance(sample, SurfaceCue):
             parts.intake.take_cue(sample)
@@ -221,8 +247,9 @@ class LiveNode:
                 raise ValueError("no pose was measured yet")
             learner = self._parts.learning.learner
             self._publish(path_ahead(learner, self._odometry, rows, horizon=horizon, asked=True))
-        except (ValueError, KeyError, TypeError, AttributeError, SlipwiseError) as problem:
-            said.note(t, f"a prediction was asked for that cannot be made: {problem}")
+        except Exception as problem:  # it is somebody's text
+            said.count("a prediction that cannot be made")
+            said.once(t, "no prediction", f"a prediction was asked for that cannot be made: {problem}")
 
     def _apply_now(self, t: float) -> None:
         parts = self._parts
@@ -255,7 +282,7 @@ class LiveNode:
         for watcher in self._parts.watchers:
             texts += watcher.notices()
         for text in texts:
-            self._parts.said.note(self._parts.intake.newest, text)
+            self._parts.said.note(self._parts.intake.newest, text, error=True)
 
     def _publish_status(self) -> None:
         parts = self._parts
@@ -291,21 +318,36 @@ class LiveNode:
         try:
             parts.cache.save(parts.learning.learner, parts.learning.valid)
         except SlipwiseError as problem:
-            parts.said.begins(t, "cache", f"the state cannot be saved: {problem}")
+            self._unsaved = problem
+            parts.said.begins(t, "cache", f"the state cannot be saved: {problem}", error=True)
             parts.said.count("a state that could not be saved")
         else:
+            self._unsaved = None
             parts.said.ends(t, "cache", "the state can be saved again")
 
     def _finish(self) -> None:
         parts = self._parts
-        parts.learning.take(parts.intake.events())
-        self._look_for_moves(whole=True)
+        t = parts.intake.newest
+        self._survive("the last segment", lambda: parts.learning.take(parts.intake.events()))
+        self._survive("the search for moves", lambda: self._look_for_moves(whole=True))
         if parts.handover is not None:
-            parts.handover.finish(parts.intake.newest)
-        self.save()
-        self._take_notices()
-        for note in parts.said.take_new():
-            self._publish(note)
-        self._publish_status()
+            self._survive("the handover", partial(parts.handover.finish, t))
+        self._survive("the state of the node", self.save)
+        self._survive("the state of the node", self._say_all)
         for watcher in parts.watchers:
             watcher.close()
+        if parts.cache is not None:
+            parts.cache.close()
+
+    def _say_all(self) -> None:
+        self._take_notices()
+        self._publish_status()
+        for note in self._parts.said.take_new():
+            self._publish(note)
+
+
+def _name_of(sample: Sample) -> str:
+    """What it is, for counts."""
+    return (
+        f"a request ({sample.kind})" if isinstance(sample, Request) else f"a sample ({type(sample).__name__})"
+    )

@@ -167,6 +167,7 @@ class Note:
 
     t: float  # s
     text: str
+    error: bool = False  # shown whoever asked for quiet
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
-import contextlib
 import threading
-from collections import Counter
+from collections.abc import Iterator
 from typing import IO
 
 from slipwise.errors import LogError
-from slipwise.live.lines import LineReader, line_of
+from slipwise.live.lines import MOST_BYTES, LineReader, line_of
 from slipwise.live.outputs import Output
-from slipwise.live.samples import Sample
+from slipwise.live.result_lines import ResultLines, Writable
+from slipwise.live.samples import Sample, Unusable
 from slipwise.live.transport import OnSample
 
 
@@ -19,14 +19,15 @@ class Pipe:
     """Reads lines until the stream ends.
 
     Args:
-        lines: the text stream to read.
-        results: where results go as JSON lines; None: nowhere.
+        lines: the binary stream to read.
+        results: where results go as JSON lines, unbuffered; None: nowhere.
     """
 
-    def __init__(self, lines: IO[str], results: IO[str] | None = None) -> None:
-        self._lines, self._results = lines, results
-        self._reader, self._wrong = LineReader(), WrongLines()
+    def __init__(self, lines: IO[bytes], results: Writable | None = None) -> None:
+        self._lines, self._results = lines, None if results is None else ResultLines(results)
+        self._reader = LineReader()
         self._done, self._stopped = threading.Event(), threading.Event()
+        self._failure: Exception | None = None
 
     def subscribe(self, on_sample: OnSample) -> None:
         """Begin to read."""
@@ -34,21 +35,22 @@ class Pipe:
 
     def publish(self, output: Output) -> None:
         """Write a result as a line; a reader that went away is no error."""
-        if self._results is None:
-            return
-        try:
-            self._results.write(line_of(output) + "\n")
-            self._results.flush()
-        except (BrokenPipeError, ValueError):
-            self._results = None
+        if self._results is not None:
+            self._results.write(line_of(output))
 
     def notices(self) -> list[str]:
-        """Return what was wrong with lines."""
-        return self._wrong.take()
+        """Return what was wrong with results."""
+        return [] if self._results is None else self._results.notices()
 
     @property
     def finished(self) -> bool:
-        """Whether the stream is at its end."""
+        """Whether the stream is at its end.
+
+        Raises:
+            LogError: it cannot be read further.
+        """
+        if self._done.is_set() and self._failure is not None:
+            raise LogError(f"the lines cannot be read further: {self._failure}") from self._failure
         return self._done.is_set()
 
     @property
@@ -59,39 +61,53 @@ class Pipe:
     def close(self) -> None:
         """Take no more lines; the thread ends with the stream, or with the process."""
         self._stopped.set()
+        if self._results is not None:
+            self._results.close()
 
     def _read(self, on_sample: OnSample) -> None:
-        with contextlib.suppress(ValueError, OSError):  # closed under way
-            for number, line in enumerate(self._lines, start=1):
+        try:
+            for number, line in enumerate(bounded_lines(self._lines), start=1):
                 if self._stopped.is_set():
                     return
-                for sample in self._wrong.sound(self._reader, line, f"line {number}"):
+                for sample in samples_in(self._reader, line, f"line {number}"):
                     on_sample(sample)
-        self._done.set()
+        except Exception as problem:  # the node's thread raises it
+            self._failure = None if self._stopped.is_set() else problem
+        finally:
+            self._done.set()
 
 
-class WrongLines:
-    """Says the first wrong line of each kind, and how many there were of late."""
+def bounded_lines(stream: IO[bytes]) -> Iterator[bytes]:
+    """Yield the lines of a stream; of one that is too long its beginning, longer than a line may be."""
+    goes_on = False
+    while line := stream.readline(MOST_BYTES + 1):
+        if not goes_on:
+            yield line
+        goes_on = not line.endswith(b"\n")
 
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._new: list[str] = []
-        self._count: Counter[str] = Counter()
 
-    def sound(self, reader: LineReader, line: str, place: str) -> list[Sample]:
-        """Return the samples of a line; where it cannot be used, none, and why is kept with its place."""
-        try:
-            return reader.read(line)
-        except LogError as problem:
-            kind = str(problem)
-        with self._lock:
-            self._count[kind] += 1
-            if self._count[kind] == 1:
-                self._new.append(f"left out, {place}: {kind}")
-        return []
+def samples_in(reader: LineReader, line: bytes, place: str) -> list[Sample]:
+    """Return the samples of a line; where it cannot be used, why, with its place."""
+    try:
+        return reader.read(decoded(line))
+    except LogError as problem:
+        why = str(problem)
+    except Exception as problem:  # no line ends the thread that reads
+        why = f"it cannot be read: {type(problem).__name__}"
+    return [Unusable("a line that cannot be used", f"left out, {place}: {why}", kind=why)]
 
-    def take(self) -> list[str]:
-        """Return what is new."""
-        with self._lock:
-            new, self._new = self._new, []
-        return new
+
+def decoded(line: bytes) -> str:
+    """Return the text of a line.
+
+    Raises:
+        LogError: it is too long, or no text.
+    """
+    if len(line) > MOST_BYTES:
+        raise LogError("a line is too long", advice=f"write {MOST_BYTES} bytes at most")
+    try:
+        return line.decode("utf-8")
+    except UnicodeDecodeError as problem:
+        raise LogError(
+            "a line is no text in UTF-8", advice="write text in UTF-8, one line for each sample"
+        ) from problem

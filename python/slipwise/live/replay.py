@@ -40,7 +40,7 @@ class Replay(Feed):
         label: name of the surface; without it those of the column `terrain`.
 
     Raises:
-        LogError: no run has such inputs and poses.
+        LogError: no run has such inputs and poses, or one has known forces.
         SettingsError: the rate is negative.
     """
 
@@ -48,6 +48,8 @@ class Replay(Feed):
         if not rate >= AS_FAST_AS_IT_GOES:
             raise SettingsError(f"the rate is {rate:g}", where="--rate", advice="such as 10, or 0: no waits")
         drive = prepare_run(log, input_name)
+        for run in drive:
+            _refuse_forces(run)
         super().__init__(self._paced(drive, rate, label))
         self._wheels = has_wheels(drive)
         self._sources = source_names(run.run for run in drive)
@@ -103,11 +105,7 @@ def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Comman
     """
     *others, measured = recording_rows(run.run)
     commands, wheels, attitudes = (rows.tolist() for rows in others)
-    if run.run.poses.force_x is not None or run.run.poses.force_y is not None:
-        raise LogError(
-            "known forces are not taken live",
-            advice="leave out force_x and force_y, or use slipwise calibrate",
-        )
+    _refuse_forces(run)
     poses = (sourced_rows(run.run, measured, sources) if sources else measured).tolist()
     tilt = {t: (roll, pitch) for t, roll, pitch in attitudes}
     streams: tuple[list[tuple[float, int, int, Sample]], ...] = (
@@ -119,6 +117,15 @@ def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Comman
     for _, _, _, sample in heapq.merge(*streams):
         assert isinstance(sample, Command | Wheels | Pose | Gyro)
         yield sample
+
+
+def _refuse_forces(run: PreparedRun) -> None:
+    if run.run.poses.force_x is not None or run.run.poses.force_y is not None:
+        raise LogError(
+            "known forces are not taken live",
+            where=run.run.name,
+            advice="leave out force_x and force_y, or use slipwise calibrate",
+        )
 
 
 def _pose(row: list[float], tilt: tuple[float, float] | None, sources: Sequence[str]) -> Pose:

@@ -18,7 +18,7 @@ from slipwise.live.node_parameters import NodeParameters
 from slipwise.live.outputs import AppliedParameters, Output, Status
 from slipwise.live.ros_messages import TOPICS, RosMessages
 from slipwise.live.ros_samples import FixPoses, ToPose, to_command, to_gyro, to_pose, to_wheels
-from slipwise.live.samples import Override, Pose, Request, SurfaceCue
+from slipwise.live.samples import Override, Pose, Request, SurfaceCue, Unusable
 from slipwise.live.stamps import Stamps
 from slipwise.live.transport import OnSample
 from slipwise.live.wires.ros_types import ros_types
@@ -71,7 +71,6 @@ class RosTransport:
         self._reading = ros_types()
         self._notices: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._stamps = Stamps("" if roles.pose is None else roles.pose.name, self._notices.put)
-        self._faulty: set[str] = set()
         self._calls: queue.SimpleQueue[AppliedParameters | None] = queue.SimpleQueue()
         self._caller = threading.Thread(target=self._call_nodes, name="parameters", daemon=True)
         self._closed = False
@@ -200,9 +199,8 @@ class RosTransport:
                 message = read(payload)
                 samples = convert(message, self._stamps.of(message, time.time(), topic))
             except Exception as problem:
-                if topic not in self._faulty:
-                    self._faulty.add(topic)
-                    self._notices.put(f"messages of {topic} that cannot be read are left out: {problem}")
+                reason = f"messages of {topic} that cannot be read"
+                on_sample(Unusable(reason, f"{reason} are left out: {problem}", kind=topic))
                 return
             for sample in samples if isinstance(samples, list) else [samples]:
                 if sample is not None:
@@ -213,7 +211,10 @@ class RosTransport:
     def _call_nodes(self) -> None:
         nodes = NodeParameters(self._wire, self._reading)
         while (applied := self._calls.get()) is not None:
-            said = nodes.set(applied)
+            try:
+                said = nodes.set(applied)
+            except Exception as problem:  # the next call may be sound
+                said = f"{applied.node}: its parameters cannot be set: {problem}"
             if said:
                 self._notices.put(said)
 

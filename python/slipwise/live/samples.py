@@ -96,4 +96,13 @@ class RunStart:
     drive: DriveStart | None = None  # a drive begins with it; None: the surface is still the one of before
 
 
-Sample = Command | Wheels | Pose | Gyro | Override | Request | SurfaceCue | RunStart
+@dataclass(frozen=True, slots=True)
+class Unusable:
+    """Something came that is no sample: it is counted, and the first of each kind is said."""
+
+    reason: str  # for the count
+    text: str  # what to say
+    kind: str  # of what is said
+
+
+Sample = Command | Wheels | Pose | Gyro | Override | Request | SurfaceCue | RunStart | Unusable

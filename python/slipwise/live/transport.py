@@ -30,7 +30,11 @@ class Transport(Protocol):
 
     @property
     def finished(self) -> bool:
-        """Whether nothing more will come, as at the end of a file."""
+        """Whether nothing more will come, as at the end of a file.
+
+        Raises:
+            SlipwiseError: what brings the samples failed for good.
+        """
 
     @property
     def wheels(self) -> bool:

@@ -10,7 +10,7 @@ import threading
 from slipwise.errors import SettingsError
 from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import Output
-from slipwise.live.pipe import WrongLines
+from slipwise.live.pipe import samples_in
 from slipwise.live.transport import OnSample
 
 DEFAULT_ADDRESS = "127.0.0.1:7447"
@@ -48,7 +48,7 @@ class Udp:
 
     def __init__(self, address: str = DEFAULT_ADDRESS) -> None:
         self._socket = listening_socket(address)
-        self._reader, self._wrong = LineReader(), WrongLines()
+        self._reader = LineReader()
         self._sender: tuple[str, int] | None = None
         self._stopped = threading.Event()
         self._thread: threading.Thread | None = None
@@ -72,8 +72,8 @@ class Udp:
             self._socket.sendto(line.encode() + b"\n", self._sender)
 
     def notices(self) -> list[str]:
-        """Return what was wrong with packets."""
-        return self._wrong.take()
+        """Nothing to say; what is wrong with packets is among the samples."""
+        return []
 
     @property
     def finished(self) -> bool:
@@ -102,6 +102,6 @@ class Udp:
             except OSError:
                 return
             number += 1
-            for line in packet.decode("utf-8", errors="replace").splitlines():
-                for sample in self._wrong.sound(self._reader, line, f"packet {number}"):
+            for line in packet.splitlines():
+                for sample in samples_in(self._reader, line, f"packet {number}"):
                     on_sample(sample)

@@ -85,7 +85,55 @@ def test_what_cannot_be_read_is_set_aside_and_said(
     assert found.learner is None
     assert "cannot be read" in found.said
     assert "set-aside" in found.said
+    cache.close()
     assert Cache(tmp_path, KEY).load().said == ""
+
+
+def test_a_second_node_on_the_same_cache_is_refused_until_the_first_ends(tmp_path: Path) -> None:
+    first, second = Cache(tmp_path, KEY), Cache(tmp_path, KEY)
+    first.load()
+    with pytest.raises(OutputError, match=r"another node has this cache.*--vehicle"):
+        second.load()
+    first.close()
+    assert second.load().said == ""
+
+
+def test_a_state_that_ended_two_starts_is_set_aside_at_the_third(
+    tmp_path: Path, learner: MotionLearner
+) -> None:
+    Cache(tmp_path, KEY).save(learner, None)
+    for _ in range(2):
+        assert Cache(tmp_path, KEY).load().learner is not None  # and the process dies
+    third = Cache(tmp_path, KEY)
+    found = third.load()
+    assert found.learner is None
+    assert "ended the last 2 starts" in found.said
+    assert third.state.with_name(third.state.name + ".set-aside").exists()
+    third.save(learner, None)
+    third.close()
+    for _ in range(4):  # starts that end in order
+        in_order = Cache(tmp_path, KEY)
+        assert in_order.load().learner is not None
+        in_order.close()
+
+
+def test_a_state_that_cannot_be_judged_is_neither_saved_nor_used(
+    tmp_path: Path, learner: MotionLearner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cache = Cache(tmp_path, KEY)
+    cache.save(learner, None)
+    before = cache.state.read_bytes()
+
+    def judge(self: MotionLearner, **_: object) -> None:
+        raise ZeroDivisionError("a fault of slipwise")
+
+    monkeypatch.setattr(MotionLearner, "judged_model", judge)
+    with pytest.raises(SettingsError, match="cannot be judged: a fault of slipwise"):
+        cache.save(learner, None)
+    assert cache.state.read_bytes() == before
+    found = cache.load()
+    assert found.learner is None
+    assert "cannot be read: a fault of slipwise" in found.said
 
 
 def test_settings_of_the_node_alone_are_no_other_robot() -> None:

@@ -85,13 +85,9 @@ def test_runs_of_a_log_stay_apart() -> None:
 
 
 def through_pipe(log: Log, input_name: str) -> Built:
-    results = io.StringIO()
-    built = build_node(
-        Pipe(iter(lines_of(log, input_name)), results),
-        input_name,
-        Settings(),
-        run="a pipe",  # type: ignore[arg-type]
-    )
+    results = io.BytesIO()
+    lines = io.BytesIO("".join(lines_of(log, input_name)).encode())
+    built = build_node(Pipe(lines, results), input_name, Settings(), run="a pipe")
     built.node.run()
     said = [json.loads(line) for line in results.getvalue().splitlines()]
     assert any("odometry" in each for each in said)
@@ -142,7 +138,7 @@ def test_the_rate_is_times_real_time() -> None:
 
 def test_a_wrong_line_is_said_once_and_the_rest_goes_on(tmp_path: Path) -> None:
     lines = ["t,odo_v,odo_omega", "1.0,0.5", "2.0,0.5", "3.0,0.5,0.1", "x,0.5,0.1"]
-    built = build_node(Pipe(iter(lines)), "wheel", Settings(), run="a pipe")  # type: ignore[arg-type]
+    built = build_node(Pipe(io.BytesIO("\n".join(lines).encode())), "wheel", Settings(), run="a pipe")
     built.node.run()
     said = [text for _, text in built.said.log()]
     assert [text for text in said if "left out" in text] == [

@@ -16,6 +16,7 @@ from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
+from starlette.types import Receive, Scope, Send
 
 from slipwise.live.watch.history import History
 from slipwise.live.watch.web_snapshot import snapshot
@@ -74,22 +75,22 @@ class _Page:
     async def stream(self, _: Request) -> Response:
         if self._streams >= _MOST_STREAMS:
             return _plain("too many pages are open", 503)
+        self._streams += 1  # before it is answered: many may ask at once
         headers = {**HEADERS, "X-Accel-Buffering": "no"}
-        return StreamingResponse(self._events(), media_type="text/event-stream", headers=headers)
+        return _Stream(self._events(), self._stream_ended, headers)
+
+    def _stream_ended(self) -> None:
+        self._streams -= 1
 
     async def _events(self) -> AsyncIterator[str]:
-        self._streams += 1
-        try:
-            sent, said = "", 0.0
-            while not self._ending.is_set():
-                now = time.monotonic()
-                news = self._news(now)
-                if news != sent or now - said >= _ALIVE:
-                    yield f"event: state\ndata: {news}\n\n" if news != sent else "event: alive\ndata:\n\n"
-                    sent, said = news, now
-                await asyncio.sleep(PERIOD)
-        finally:
-            self._streams -= 1
+        sent, said = "", 0.0
+        while not self._ending.is_set():
+            now = time.monotonic()
+            news = self._news(now)
+            if news != sent or now - said >= _ALIVE:
+                yield f"event: state\ndata: {news}\n\n" if news != sent else "event: alive\ndata:\n\n"
+                sent, said = news, now
+            await asyncio.sleep(PERIOD)
 
     def _news(self, now: float) -> str:
         """Return the message; it is made again for a new status, and once a second for all else."""
@@ -98,6 +99,22 @@ class _Page:
             text = snapshot(self._history.seen())
             self._made = (self._history.count, now, text)
         return text
+
+
+class _Stream(StreamingResponse):
+    """Events, and what to do once they end, however they do."""
+
+    def __init__(
+        self, events: AsyncIterator[str], ended: Callable[[], None], headers: Mapping[str, str]
+    ) -> None:
+        super().__init__(events, media_type="text/event-stream", headers=headers)
+        self._ended = ended
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            self._ended()
 
 
 def application(history: History, access: Access, ending: threading.Event) -> Starlette:

@@ -43,6 +43,7 @@ class WebPage:
         try:
             from uvicorn import Config, Server
 
+            from slipwise.live.watch.bounded_connections import BoundedConnections
             from slipwise.live.watch.web_application import Access, application
         except ImportError as problem:
             raise SettingsError(
@@ -56,7 +57,14 @@ class WebPage:
         self.port = int(self._socket.getsockname()[1])
         self.url = _address(host, self.port, self.token)
         app = application(self._history, Access(self.token, local), self._ending)
-        config = Config(app, log_config=None, access_log=False, server_header=False, lifespan="off")
+        config = Config(
+            app,
+            http=BoundedConnections,
+            log_config=None,
+            access_log=False,
+            server_header=False,
+            lifespan="off",
+        )
         config.timeout_graceful_shutdown = 1
         self._server: Server = Server(config)
         self._thread = threading.Thread(target=self._serve, name="slipwise-web", daemon=True)

@@ -157,3 +157,45 @@ def test_too_many_streams_are_refused_and_a_closed_one_makes_room(page: WebPage)
 def test_loopback_is_told_from_other_addresses() -> None:
     assert [is_loopback(a) for a in ("127.0.0.1", "127.9.9.9", "::1", "::1%lo")] == [True] * 4
     assert [is_loopback(a) for a in ("0.0.0.0", "::", "192.168.1.4", "robot")] == [False] * 4
+
+
+def test_half_requests_hold_few_files_and_not_for_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    from slipwise.live.watch import bounded_connections
+
+    monkeypatch.setattr(bounded_connections, "ASKED_WITHIN", 1.0)
+    page = WebPage()
+    held = []
+    try:
+        for _ in range(300):
+            half = socket.create_connection(("127.0.0.1", page.port), timeout=5)
+            half.sendall(b"GET / HTTP/1.1\r\nHost: 127.0")
+            held.append(half)
+        time.sleep(0.3)
+        connections = page._server.server_state.connections
+        assert len(connections) <= bounded_connections.MOST_CONNECTIONS
+        until = time.monotonic() + 10.0
+        while connections and time.monotonic() < until:
+            time.sleep(0.05)
+        assert _ask(page, "/").status == 200
+    finally:
+        for half in held:
+            half.close()
+        page.close()
+
+
+def test_streams_are_counted_before_they_are_answered(page: WebPage) -> None:
+    page.take(waiting_status())
+    asked = []
+    for _ in range(40):
+        connection = http.client.HTTPConnection("127.0.0.1", page.port, timeout=10)
+        connection.request("GET", "/events")
+        asked.append(connection)
+    answers = [connection.getresponse().status for connection in asked]
+    assert answers.count(200) == 16
+    assert answers.count(503) == 24
+    for connection in asked:
+        connection.close()
+    until = time.monotonic() + 10.0
+    while (status := _ask(page, "/events").status) == 503 and time.monotonic() < until:
+        time.sleep(0.1)
+    assert status == 200
