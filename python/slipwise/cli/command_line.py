@@ -6,7 +6,9 @@ from __future__ import annotations
 import shlex
 import sys
 
+from slipwise.addresses import masked
+
 
 def command_line() -> str:
     """Return `slipwise` and its arguments, quoted where needed."""
-    return shlex.join(["slipwise", *sys.argv[1:]])
+    return shlex.join(["slipwise", *map(masked, sys.argv[1:])])

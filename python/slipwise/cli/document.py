@@ -9,6 +9,8 @@ from dataclasses import asdict
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
+from slipwise.addresses import masked
+
 if TYPE_CHECKING:
     from slipwise.calibration import Calibration, Verdict
     from slipwise.calibration.learned_sequence import LearnedSequence
@@ -19,7 +21,11 @@ if TYPE_CHECKING:
 
 def head(command: str) -> dict[str, Any]:
     """Return what every document starts with."""
-    return {"command": command, "arguments": sys.argv[1:], "slipwise_version": version("slipwise")}
+    return {
+        "command": command,
+        "arguments": [masked(argument) for argument in sys.argv[1:]],
+        "slipwise_version": version("slipwise"),
+    }
 
 
 def log_part(log: Log, left_out: Sequence[LeftOut]) -> dict[str, Any]:

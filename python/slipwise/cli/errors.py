@@ -13,6 +13,7 @@ from types import FrameType
 
 import typer
 
+from slipwise.addresses import masked
 from slipwise.errors import SlipwiseError
 
 BAD_USE = 2
@@ -50,7 +51,11 @@ def _report(error: BaseException, *, debug: bool) -> int:
 
 
 def line_for(error: BaseException) -> str:
-    """Return the one line that a user sees."""
+    """Return the one line that a user sees, without what addresses keep secret."""
+    return masked(_line_for(error))
+
+
+def _line_for(error: BaseException) -> str:
     if isinstance(error, SlipwiseError):
         line = str(error)
     elif isinstance(error, (KeyboardInterrupt, typer.Abort)):

@@ -69,6 +69,9 @@ def fleet(
     found = find_logs(logs, vehicle=vehicle)
     store = Store(output)
     _check_settings(settings)
+    mended = store.mend()
+    for sentence in mended:
+        out.line(sentence)
     with progress_bar("learning") as update:
         count = learn_fleet(
             found,
@@ -83,7 +86,7 @@ def fleet(
     sentences, code = summary(table, findings, unusable), 0 if table else 1
     table.clear()  # its memory serves the prior
     write_prior(files["prior"], findings, store.knowledge(), vehicle_type=vehicle_type)
-    out.document(_document(count, findings, unusable, files) | {"exit_code": code})
+    out.document(_document(count, findings, unusable, files) | {"set_aside": mended, "exit_code": code})
     for sentence in sentences:
         out.line(sentence)
     for log, why in count.failed:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import unquote
 
+from slipwise.addresses import remote_url, shown
 from slipwise.errors import LogError
-from slipwise.logs.remote import remote_url, shown
 
 ENDINGS = (".csv", ".csv.gz", ".parquet", ".mcap", ".db3", ".bag", ".bin", ".tlog", ".ulg")
 ROSBAG2 = "metadata.yaml"  # in a folder that is one log
@@ -44,10 +44,10 @@ def find_logs(places: Iterable[str | Path], *, vehicle: str = "") -> list[tuple[
             found.setdefault(Path(place), vehicle or _folder_on_server(place))
             continue
         for path in _matches(place):
-            for log in _logs_in(path):
+            for log in _logs_in(path, set()):
                 found.setdefault(log, vehicle or log.absolute().parent.name or OWN_VEHICLE)
     if not found:
-        raise LogError("there is no log there", where=", ".join(map(str, places)), advice=f"of {ENDINGS}")
+        raise LogError("there is no log there", where=", ".join(map(shown, places)), advice=f"of {ENDINGS}")
     return sorted(found.items())
 
 
@@ -83,15 +83,20 @@ def _matches(place: str) -> list[Path]:
     return matched
 
 
-def _logs_in(path: Path) -> list[Path]:
+def _logs_in(path: Path, visited: set[Path]) -> list[Path]:
+    """Return the logs below a folder, each real folder looked into once, however many links lead there."""
     if path.is_file() or (path / ROSBAG2).is_file():
         return [path]
+    real = path.resolve()
+    if real in visited:
+        return []
+    visited.add(real)
     logs: list[Path] = []
     for inside in sorted(path.iterdir()):
         if inside.name.startswith("."):
             continue
         if inside.is_dir():
-            logs.extend(_logs_in(inside))
+            logs.extend(_logs_in(inside, visited))
         elif inside.name.endswith(ENDINGS):
             logs.append(inside)
     return logs

@@ -38,11 +38,11 @@ def knowledge_from(text: str) -> LogKnowledge:
     content = json.loads(text)
     try:
         return LogKnowledge(
-            content["input"],
-            content["kept"],
+            str(content["input"]),
+            str(content["kept"]),
             {name: _structure_from(each) for name, each in content["structures"].items()},
         )
-    except (KeyError, TypeError, AttributeError) as problem:
+    except (KeyError, TypeError, AttributeError, RecursionError) as problem:
         raise ValueError(f"not what a log says: {problem}") from problem
 
 
@@ -74,10 +74,10 @@ def _normal(learned: LearnedNormal) -> dict[str, Any]:
 def _structure_from(content: dict[str, Any]) -> StructureKnowledge:
     v, omega = content["speeds"]
     return StructureKnowledge(
-        (float(v), float(omega)),
+        (float(_floats(v)), float(_floats(omega))),
         {
             name: BasisKnowledge(
-                _normal_from(each["slip"]), float(each["weight"]), _floats(each["noise_scale"])
+                _normal_from(each["slip"]), float(_floats(each["weight"])), _floats(each["noise_scale"])
             )
             for name, each in content["bases"].items()
         },
@@ -88,13 +88,18 @@ def _structure_from(content: dict[str, Any]) -> StructureKnowledge:
 
 def _normal_from(content: dict[str, Any]) -> LearnedNormal:
     mean = _floats(content["mean"])
-    return LearnedNormal(
-        mean,
-        _floats(content["covariance"]).reshape(len(mean), len(mean)),
-        _floats(content["prior_mean"]),
-        _floats(content["prior_std"]),
-    )
+    size = mean.shape
+    if mean.ndim != 1:
+        raise ValueError("a mean is no list of numbers")
+    covariance = _floats(content["covariance"]).reshape(size * 2)
+    prior_mean, prior_std = _floats(content["prior_mean"]), _floats(content["prior_std"])
+    if prior_mean.shape != size or prior_std.shape != size or (np.diag(covariance) < 0.0).any():
+        raise ValueError("a prior or a covariance does not go with its mean")
+    return LearnedNormal(mean, covariance, prior_mean, prior_std)
 
 
 def _floats(values: list[float]) -> Floats:
-    return np.array(values, dtype=np.float64)
+    found = np.array(values, dtype=np.float64)
+    if not np.isfinite(found).all():
+        raise ValueError("a number is not finite")
+    return found

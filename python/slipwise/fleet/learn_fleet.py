@@ -9,12 +9,12 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
+from slipwise.addresses import masked, remote_url, shown
 from slipwise.calibration import Settings, load_settings
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.learned_rows import LogRows, key_of, log_hash, settings_hash
 from slipwise.fleet.scheduler import Scheduler
 from slipwise.fleet.store import Store
-from slipwise.logs.remote import remote_url, shown
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def learn_fleet(
     with closing(scheduler.run(work.tasks())) as outcomes:
         for outcome in outcomes:
             if outcome.rows is None or not outcome.rows.key:
-                failed.append((shown(outcome.task.path), outcome.failure))
+                failed.append((shown(outcome.task.path), masked(outcome.failure)))
             elif work.is_new(outcome.task, outcome.rows):
                 store.add(outcome.rows)
                 learned, unusable = learned + bool(outcome.rows.rows), unusable + (not outcome.rows.rows)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from slipwise.addresses import remote_url, shown
 from slipwise.calibration import Settings, load_settings
 from slipwise.calibration.from_prior import calibrate_from
 from slipwise.errors import LogError, SlipwiseError
@@ -20,7 +21,7 @@ from slipwise.files import sha256_of
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.knowledge_file import knowledge_text
 from slipwise.logs import Log, open_log
-from slipwise.logs.remote import lent, remote_url, remote_version, shown
+from slipwise.logs.remote import lent, remote_version
 from slipwise.models.model import Model
 
 FIRST_UNIX_TIME = 946684800.0  # s, the year 2000; a log with earlier stamps counts from its own start

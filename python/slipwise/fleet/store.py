@@ -17,13 +17,15 @@ from urllib.parse import quote, unquote
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.addresses import shown
 from slipwise.calibration.log_knowledge import LogKnowledge
-from slipwise.files import write_text_whole, write_whole
+from slipwise.files import output_errors, write_text_whole, write_whole
 from slipwise.fleet.knowledge_file import knowledge_from
 from slipwise.fleet.learned_rows import LogRows, Row
-from slipwise.logs.remote import shown
 
 ROWS, UNUSABLE, KNOWLEDGE, ADDRESSES = "rows", "unusable", "knowledge", "addresses"
+SET_ASIDE = "set-aside"  # what could not be read
+LONGEST_NAME = 150  # bytes of a vehicle's name in that of a folder, of which most systems allow 255
 #: Of the rows that a fleet is looked at by.
 COLUMNS = (
     "vehicle",
@@ -71,7 +73,7 @@ class Store:
             content = {name: getattr(learned, name) for name in (*_OF_LOG, "vehicle", "month", "failure")}
             write_text_whole(path, json.dumps(content, indent=1) + "\n")
             return path
-        vehicle, month = (quote(text, safe="") for text in (learned.vehicle, learned.month))
+        vehicle, month = folder_name(learned.vehicle), quote(learned.month, safe="")
         if learned.knowledge:
             known = self.folder / KNOWLEDGE / f"vehicle={vehicle}" / f"{learned.key}.json"
             known.parent.mkdir(parents=True, exist_ok=True)
@@ -122,7 +124,7 @@ class Store:
         return {name: values[order] for name, values in columns.items()}
 
     def knowledge(self, most: int = MOST_KNOWN) -> list[tuple[str, LogKnowledge]]:
-        """Return what each log says in the terms of every basis, with its vehicle; passes damaged files.
+        """Return what each log says in the terms of every basis, with its vehicle; passes unreadable files.
 
         Args:
             most: logs; of more, each vehicle has equally many, drawn by the hash that names them.
@@ -130,16 +132,47 @@ class Store:
         found = []
         for path in _spread(self.folder / KNOWLEDGE, most):
             with contextlib.suppress(ValueError, OSError):
-                text = path.read_text(encoding="utf-8")
-                found.append((unquote(path.parent.name.removeprefix("vehicle=")), knowledge_from(text)))
+                found.append((unquote(path.parent.name.removeprefix("vehicle=")), _knowledge(path)))
         return found
 
     def unusable(self) -> list[dict[str, Any]]:
         """Return log, vehicle and failure of every log that could not be used, in order of the log."""
-        found = [
-            json.loads(path.read_text(encoding="utf-8")) for path in (self.folder / UNUSABLE).glob("*.json")
-        ]
+        found = [_unusable(path) for path in (self.folder / UNUSABLE).glob("*.json")]
         return sorted(found, key=lambda entry: str(entry["log"]))
+
+    def mend(self) -> list[str]:
+        """Set files aside that cannot be read, so that their logs are learned again; return what to say.
+
+        Raises:
+            OutputError: one cannot be moved.
+        """
+        said = []
+        for kind, pattern, read in (
+            (ROWS, PARTS, _check_rows),
+            (KNOWLEDGE, "vehicle=*/*.json", _knowledge),
+            (UNUSABLE, "*.json", _unusable),
+        ):
+            for path in sorted((self.folder / kind).glob(pattern)):
+                if not _KEY.fullmatch(path.stem):
+                    continue
+                try:
+                    read(path)
+                except Exception as problem:  # pyarrow has errors of its own
+                    self._set_aside(path)
+                    reason = " ".join(str(problem).split())[:200] or type(problem).__name__
+                    said.append(
+                        f"{path}: cannot be read ({reason}); it was set aside, its log is learned again"
+                    )
+        return said
+
+    def _set_aside(self, path: Path) -> None:
+        """Move a file away, and with it all that was learned of its log."""
+        aside = self.folder / SET_ASIDE
+        with output_errors(aside):
+            aside.mkdir(parents=True, exist_ok=True)
+            for each in (path, *(self.folder / ROWS).glob(f"vehicle=*/month=*/{path.stem}.parquet")):
+                if each.exists():
+                    each.replace(aside / each.name)
 
 
 def _spread(folder: Path, most: int) -> list[Path]:
@@ -153,6 +186,43 @@ def _spread(folder: Path, most: int) -> list[Path]:
         ordered.append((place[path.parent.name], path))
         place[path.parent.name] += 1
     return sorted(path for _, path in sorted(ordered)[:most])
+
+
+def folder_name(vehicle: str) -> str:
+    """Return a vehicle's name as a folder bears it: one that is too long ends with its hash."""
+    name = quote(vehicle, safe="")
+    if len(name) <= LONGEST_NAME:
+        return name
+    end = 0
+    while len(quote(vehicle[: end + 1], safe="")) <= LONGEST_NAME - len(_text_hash("")[:16]) - 1:
+        end += 1
+    return f"{quote(vehicle[:end], safe='')}~{_text_hash(vehicle)[:16]}"
+
+
+def _check_rows(path: Path) -> None:
+    """Raise where the rows of a log cannot be read, or a number is none."""
+    table = _read([path])
+    for name in ("start", "seconds", "distance", "value", "std"):
+        if not len(table[name]) or not np.isfinite(table[name].astype(float)).all():
+            raise ValueError(f"{name} is missing or not finite")
+
+
+def _knowledge(path: Path) -> LogKnowledge:
+    return knowledge_from(path.read_text(encoding="utf-8"))
+
+
+def _unusable(path: Path) -> dict[str, Any]:
+    """Return what stands in a file of an unusable log.
+
+    Raises:
+        ValueError: it is not such a file.
+    """
+    found = json.loads(path.read_text(encoding="utf-8"))
+    if not isinstance(found, dict) or not all(
+        isinstance(found.get(name), str) for name in ("log", "vehicle", "failure")
+    ):
+        raise ValueError("not what is said of a log")
+    return found
 
 
 def _text_hash(text: str) -> str:

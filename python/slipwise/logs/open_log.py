@@ -9,13 +9,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from slipwise.addresses import shown
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.command_timeout import with_ended_commands
 from slipwise.logs.corrections import scaled_inputs, turned_poses
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
-from slipwise.logs.remote import MOST_FETCHED, local_file, shown
+from slipwise.logs.remote import MOST_FETCHED, local_file
 from slipwise.logs.run_name import run_name
 from slipwise.logs.time_span import cut_to_span
 from slipwise.logs.unpacking import unpacking_at_most

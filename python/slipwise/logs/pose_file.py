@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from slipwise.addresses import shown
 from slipwise.errors import LogError
 from slipwise.logs.column_names import listed, place_of
 from slipwise.logs.gpx import is_gpx, read_gpx
@@ -19,7 +20,7 @@ from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
 from slipwise.logs.nmea import is_nmea, read_nmea
 from slipwise.logs.piped import LARGEST
 from slipwise.logs.ppk import is_ppk, read_ppk
-from slipwise.logs.remote import local_file, shown
+from slipwise.logs.remote import local_file
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
 from slipwise.logs.table import Table, read_csv, read_parquet

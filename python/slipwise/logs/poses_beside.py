@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from slipwise.addresses import shown
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Inputs, Log, Run, Source, empty_poses, has_course
@@ -16,7 +17,6 @@ from slipwise.logs.navsat import with_course
 from slipwise.logs.options import AUTO, LogOptions
 from slipwise.logs.pose_clock import agreement_at, find_clock_offset, pose_motion
 from slipwise.logs.pose_file import read_pose_file
-from slipwise.logs.remote import shown
 from slipwise.logs.streams import RawStream, clean_stream, to_poses
 
 _LOW_AGREEMENT = 0.3  # agreement of motions below which clocks may be apart

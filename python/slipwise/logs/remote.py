@@ -7,6 +7,7 @@ import contextlib
 import re
 import shutil
 import tempfile
+import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -14,6 +15,7 @@ from email.utils import parsedate_to_datetime
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
+from slipwise.addresses import remote_url, shown
 from slipwise.errors import LogError
 from slipwise.logs.piped import regular_file
 
@@ -24,7 +26,7 @@ MOST_FETCHED = 4096.0  # [MiB]
 _BLOCK = 1 << 20
 _NOT_FOUND = 404  # of HTTP
 _PATIENCE = 60.0  # [s] without a byte
-_REMOTE = re.compile(r"(?P<scheme>https?|s3|gs|az):/{1,2}(?P<rest>[^/].*)", re.DOTALL)
+_SLOWEST = 16384.0  # [bytes/s] on the average, after as long: a file takes no longer than its size asks for
 _AGAIN = "try again, or copy the file yourself"
 _TAGS = ("ETag", "etag", "md5Hash", "Content-MD5", "generation", "Last-Modified", "LastModified", "updated")
 _CHANGED = (
@@ -35,21 +37,6 @@ _CHANGED = (
     "mtime",
 )  # of HTTP, S3, Azure, Google
 _PACKAGES = {"s3": "s3fs", "gs": "gcsfs", "az": "adlfs"}
-
-
-def remote_url(path: str | Path) -> str | None:
-    """Return the address that a path is; None where it names a file on this machine.
-
-    A `Path` makes one slash of two; the two after the scheme are put back.
-    """
-    match = _REMOTE.fullmatch(str(path))
-    return f"{match['scheme']}://{match['rest']}" if match else None
-
-
-def shown(path: str | Path) -> str:
-    """Return a path as it may be shown: an address without user, password and signature."""
-    url = remote_url(path)
-    return str(path) if url is None else _public(url)
 
 
 def staged(url: str, most_fetched: float = MOST_FETCHED) -> Path:
@@ -97,8 +84,8 @@ def remote_version(url: str) -> RemoteVersion:
     Raises:
         LogError: a package is missing, there is no such file, or the server does not answer.
     """
-    where = _public(url)
-    system = _file_system(url.partition(":")[0], where)
+    where = shown(url)
+    system = _file_system(url.partition(":")[0], where, total=_PATIENCE)
     try:
         about = system.info(url)
     except Exception as error:  # the clients of servers have errors of their own
@@ -145,12 +132,14 @@ _copies: dict[
 
 
 def _fetched(url: str, most: int) -> tuple[_Folder, Path]:
-    where = _public(url)
-    system = _file_system(url.partition(":")[0], where)
+    where = shown(url)
+    scheme = url.partition(":")[0]
+    asking = _file_system(scheme, where, total=_PATIENCE)
     folder = tempfile.TemporaryDirectory(prefix="slipwise-")
     copy = Path(folder.name) / _name(where)
     try:
-        size = _known_size(system, url, where, most)
+        size = _known_size(asking, url, where, most)
+        system = _file_system(scheme, where, total=_PATIENCE + (most if size is None else size) / _SLOWEST)
         copied = _copy(system, url, copy, most)
         if size not in (None, copied):
             raise LogError(f"cut off: {copied} of {size} bytes came", where=where, advice=_AGAIN)
@@ -163,7 +152,8 @@ def _fetched(url: str, most: int) -> tuple[_Folder, Path]:
     return folder, copy
 
 
-def _file_system(scheme: str, where: str) -> AbstractFileSystem:
+def _file_system(scheme: str, where: str, *, total: float) -> AbstractFileSystem:
+    """Return what speaks with a server, each of whose answers is there within `total` seconds."""
     try:
         import fsspec
 
@@ -171,7 +161,7 @@ def _file_system(scheme: str, where: str) -> AbstractFileSystem:
         if scheme in ("http", "https"):
             import aiohttp
 
-            patience = aiohttp.ClientTimeout(total=None, sock_connect=_PATIENCE, sock_read=_PATIENCE)
+            patience = aiohttp.ClientTimeout(total=total, sock_connect=_PATIENCE, sock_read=_PATIENCE)
             options["client_kwargs"] = {"trust_env": True, "timeout": patience}
         return fsspec.filesystem(scheme, **options)
     except ImportError as error:
@@ -206,15 +196,21 @@ def _copy(system: AbstractFileSystem, url: str, copy: Path, most: int) -> int:
     """Copy in pieces, whatever the server said of the size; return the bytes that came.
 
     Raises:
-        LogError: more comes than is allowed.
+        LogError: more comes than is allowed, or it comes too slowly.
     """
     in_one_answer = {"block_size": 0} if url.startswith("http") else {}
-    copied = 0
+    copied, began = 0, time.monotonic()
     with system.open(url, "rb", **in_one_answer) as source, copy.open("wb") as file:
         while block := source.read(_BLOCK):
             copied += len(block)
             if copied > most:
-                raise _too_large(_public(url), most)
+                raise _too_large(shown(url), most)
+            if copied < _SLOWEST * (time.monotonic() - began - _PATIENCE):
+                raise LogError(
+                    f"the server is too slow: {copied} bytes in {time.monotonic() - began:.0f} s",
+                    where=shown(url),
+                    advice=_AGAIN,
+                )
             file.write(block)
     return copied
 
@@ -238,13 +234,6 @@ def _failure(error: Exception, url: str, where: str) -> LogError:
         said = said.replace(secret, "...") if secret else said
     what = f"cannot be fetched: {type(error).__name__}{f': {said[:200]}' if said else ''}"
     return LogError(what, where=where, advice=_AGAIN)
-
-
-def _public(url: str) -> str:
-    scheme, _, rest = url.partition("://")
-    place = re.split(r"[?#]", rest, maxsplit=1)[0]
-    server, slash, path = place.partition("/")
-    return f"{scheme}://{server.rpartition('@')[2]}{slash}{path}"
 
 
 def _name(where: str) -> str:

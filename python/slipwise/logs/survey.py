@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from slipwise.addresses import shown
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
 from slipwise.logs.messages import TF
 from slipwise.logs.options import LogOptions
-from slipwise.logs.remote import shown
 
 if TYPE_CHECKING:
     from slipwise.logs.role_choice import Topic

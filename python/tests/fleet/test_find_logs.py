@@ -72,3 +72,10 @@ def test_log_of_an_autopilot_is_found(tmp_path: Path) -> None:
     for name in ("a.bin", "b.tlog", "c.ulg"):
         (tmp_path / name).touch()
     assert len(find_logs([tmp_path])) == 3
+
+
+def test_links_in_a_circle_are_followed_once(logs: Path) -> None:
+    for name in ("around", "again"):
+        (logs / "red" / name).symlink_to(".")
+    (logs / "blue" / "up").symlink_to("..")
+    assert [path.name for path, _ in find_logs([logs])] == ["c.csv.gz", "drive", "a.csv", "b.mcap"]

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from fleet.work_samples import sample_rows
 
 from slipwise.fleet import Store
@@ -61,3 +63,65 @@ def test_of_too_many_logs_each_vehicle_has_equally_many(tmp_path: Path) -> None:
             store.add(sample_rows(vehicle=vehicle, key=f"{k:016x}-{0:016x}", knowledge=text))
     assert len(store.knowledge()) == 9
     assert sorted(vehicle for vehicle, _ in store.knowledge(5)) == ["one", "one", "three", "two", "two"]
+
+
+KNOWN = (
+    '{"input": "wheel", "kept": "joint", "structures": {"joint": {"speeds": [1.0, 0.5], "robot_names": [], '
+    '"robot": null, "bases": {"edd-2": {"weight": 1.0, "noise_scale": [1, 1, 1], "slip": {"mean": [0.1], '
+    '"covariance": [[0.01]], "prior_mean": [0.0], "prior_std": [0.3]}}}}}}'
+)
+
+
+def cut(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[:-20])
+
+
+def empty(path: Path) -> None:
+    path.write_bytes(b"")
+
+
+def nonsense(path: Path) -> None:
+    path.write_text(path.read_text().replace("0.01", "NaN"))
+
+
+@pytest.mark.parametrize(
+    ("pattern", "damage"),
+    [
+        ("rows/*/*/*.parquet", cut),
+        ("rows/*/*/*.parquet", empty),
+        ("knowledge/*/*.json", nonsense),
+        ("knowledge/*/*.json", cut),
+        ("unusable/*.json", empty),
+    ],
+)
+def test_a_damaged_file_is_set_aside_said_and_its_log_learned_again(
+    tmp_path: Path, pattern: str, damage: Callable[[Path], None]
+) -> None:
+    store = Store(tmp_path)
+    sound, damaged, third = (f"{k:016x}-{0:016x}" for k in (1, 2, 3))
+    for key in (sound, damaged):
+        store.add(sample_rows(key=key, knowledge=KNOWN))
+    store.add(sample_rows(key=third, rows=(), failure="no poses"))
+    assert store.mend() == []
+    key = third if pattern.startswith("unusable") else damaged
+    (path,) = (path for path in tmp_path.glob(pattern) if path.stem == key)
+    damage(path)
+    (said,) = store.mend()
+    assert str(path) in said
+    assert "learned again" in said
+    assert store.keys() == {sound, damaged, third} - {key}
+    assert (tmp_path / "set-aside" / path.name).exists()
+    assert len(store.table()["key"]) == 2 * (2 - (key == damaged))
+    assert len(store.unusable()) == 1 - (key == third)
+    assert store.mend() == []
+
+
+def test_a_long_name_of_a_vehicle_is_shortened_and_stays_its_own(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    names = ["v" * 240, "v" * 239 + "w", "\u8eca" * 80, "short"]
+    for k, name in enumerate(names):
+        store.add(sample_rows(key=f"{k:016x}-{0:016x}", vehicle=name, knowledge=KNOWN))
+    found = set(store.table()["vehicle"].tolist())
+    assert len(found) == len(names)
+    assert "short" in found
+    assert {vehicle for vehicle, _ in store.knowledge()} == found

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -19,6 +20,7 @@ class Server:
     asked: list[str] = field(default_factory=list)
     silent: bool = False  # about how long a file is
     cut: bool = False  # before the end
+    pause: float = 0.0  # s between two bytes
     headers: dict[str, str] = field(default_factory=dict)  # beside the length
 
 
@@ -46,7 +48,13 @@ def serving() -> Iterator[Server]:
             for name, value in shared.headers.items():
                 self.send_header(name, value)
             self.end_headers()
-            if body:
+            if body and shared.pause:
+                with contextlib.suppress(OSError):  # nobody waits any more
+                    for byte in content:
+                        self.wfile.write(bytes([byte]))
+                        self.wfile.flush()
+                        time.sleep(shared.pause)
+            elif body:
                 self.wfile.write(content[: len(content) // 2] if shared.cut else content)
 
         def log_message(self, *_: object) -> None:

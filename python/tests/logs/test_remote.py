@@ -3,17 +3,19 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from logs.file_server import Server, serving
 
+from slipwise.addresses import remote_url, shown
 from slipwise.errors import LogError, SettingsError
-from slipwise.logs import LogOptions, open_log
+from slipwise.logs import LogOptions, open_log, remote
 from slipwise.logs.left_out import Tally
 from slipwise.logs.pose_file import read_pose_file
-from slipwise.logs.remote import lent, remote_url, remote_version, shown, staged
+from slipwise.logs.remote import lent, remote_version, staged
 from slipwise.logs.survey import survey_log
 
 fsspec = pytest.importorskip("fsspec")
@@ -188,3 +190,14 @@ def test_another_version_has_another_tag(server: Server) -> None:
     assert not server.asked
     with pytest.raises(LogError, match="no such file on the server"):
         remote_version(f"{server.address}/none.csv")
+
+
+def test_a_server_that_sends_byte_by_byte_is_given_up_in_proportion_to_the_size(
+    server: Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(remote, "_PATIENCE", 0.4)
+    server.files["/a.csv"], server.pause = DRIVE, 0.05
+    began = time.monotonic()
+    with pytest.raises(LogError, match=r"too slow: \d+ bytes|cannot be fetched: .*Timeout"):
+        open_log(f"{server.address}/a.csv")
+    assert time.monotonic() - began < 5.0
