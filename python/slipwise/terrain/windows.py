@@ -44,12 +44,12 @@ class Windows:
     @property
     def has_vibration(self) -> NDArray[np.bool_]:
         """Return which windows have IMU measurements, [N]."""
-        return np.asarray(np.isfinite(self.vibration).all(axis=1))
+        return _measured(self.vibration)
 
     @property
     def has_current(self) -> NDArray[np.bool_]:
         """Return which windows have currents, [N]."""
-        return np.asarray(np.isfinite(self.current).all(axis=1))
+        return _measured(self.current)
 
     def only(self, chosen: NDArray[np.bool_]) -> Windows:
         """Return the windows that are chosen, [N]."""
@@ -61,6 +61,11 @@ class Windows:
             self.vibration[chosen],
             self.current[chosen],
         )
+
+
+def _measured(features: Floats) -> NDArray[np.bool_]:
+    """Return which rows hold numbers, [N]; none where there are no features, since there was no sensor."""
+    return np.asarray(np.isfinite(features).all(axis=1) & (features.shape[1] > 0))
 
 
 def cutting_of(recordings: Sequence[Recording], seconds: float) -> Cutting:

@@ -92,3 +92,12 @@ def test_progress_rises_to_one() -> None:
 def test_windows_of_other_lengths_are_refused(seconds: float) -> None:
     with pytest.raises(SettingsError, match=r"windows of .* s"):
         train(made_recordings(runs=2), seconds=seconds)
+
+
+@pytest.mark.parametrize("left_out", ["imu", "drive"])
+def test_one_sensor_alone_is_trained_with(left_out: str) -> None:
+    recordings = [replace(each, **{left_out: None}) for each in made_recordings(seconds=12.0)]
+    training = train(recordings, seconds=1.0)
+    (kind,) = training.scores
+    assert kind == {"imu": "current", "drive": "vibration"}[left_out]
+    assert training.scores[kind].accuracy > 0.9
