@@ -12,6 +12,7 @@ _NUMBERS = (
     *(b"0", b"-1", b"1e300", b"-1e300", b"1e-300", b"nan", b"inf", b"-inf", b"", b"1e6", b"9" * 400),
     *(b"9223372036854775808", b"-9223372036854775808", b"4294967296", b"2147483647", b"0x7fffffff", b"true"),
 )
+_SMALL = re.compile(rb"[^\0][\0-\x0f]\0{6}", re.DOTALL)
 _PIECES = (
     *(b"\0", b"\r", b"\n", b"\xff\xfe", b'"', b"'", b",", b";", b": "),
     *(b"[", b"]", b"{", b"&a ", b"*a", b"!!x "),
@@ -46,6 +47,16 @@ def _integer(data: bytearray, draw: random.Random, _: list[bytes]) -> None:
         at = draw.randrange(len(data) - size)
         value = draw.choice(_INTEGERS) & ((1 << (8 * size)) - 1)
         data[at : at + size] = value.to_bytes(size, draw.choice(("little", "big")))
+
+
+def _count(data: bytearray, draw: random.Random, _: list[bytes]) -> None:
+    """Change what may be a count or a place of eight bytes, little-endian: the next small number."""
+    start = draw.randrange(len(data) + 1)
+    for match in _SMALL.finditer(data, start):
+        value = int.from_bytes(match[0], "little")
+        value = draw.choice((value + 1, max(value - 1, 0), 0, 255, *_INTEGERS)) & ((1 << 64) - 1)
+        data[match.start() : match.end()] = value.to_bytes(8, "little")
+        return
 
 
 def _double(data: bytearray, draw: random.Random, _: list[bytes]) -> None:
@@ -101,6 +112,6 @@ def _line(data: bytearray, draw: random.Random, _: list[bytes]) -> None:
 
 
 _CHANGES = (
-    *(_flip, _byte, _byte, _integer, _integer, _double, _number, _number),
+    *(_flip, _byte, _byte, _integer, _integer, _count, _double, _number, _number),
     *(_remove, _cut, _insert, _repeat, _splice, _line),
 )

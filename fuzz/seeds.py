@@ -197,6 +197,72 @@ def with_sums(text: bytes) -> bytes:
     return b"".join(found)
 
 
+def lines_of_drive(seconds: float = 8.0) -> bytes:
+    """Return a drive as lines for `slipwise live`."""
+    lines = ["t,cmd_v,cmd_omega,odo_v,odo_omega,x,y,yaw,roll,pitch,override,terrain"]
+    x = y = yaw = 0.0
+    for k in range(round(20.0 * seconds)):
+        t = 0.05 * k
+        v, omega = 0.5 + 0.3 * np.sin(t / 1.5), 0.4 * np.sin(t)
+        yaw += 0.9 * omega * 0.05
+        x, y = x + 0.95 * v * np.cos(yaw) * 0.05, y + 0.95 * v * np.sin(yaw) * 0.05
+        pose = f"{x:.4f},{y:.4f},{yaw:.4f},0.01,-0.02" if k % 2 == 0 else ",,,,"
+        lines.append(f"{t:.2f},{v:.3f},{omega:.3f},{v:.3f},{omega:.3f},{pose},,{'sand' if k == 90 else ''}")
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _json_lines() -> bytes:
+    return (
+        b'{"run": "tuesday"}\n{"t": 1.0, "odo_v": 0.5, "odo_omega": 0.1, "x": 0, "y": 0, "yaw": 0.1}\n'
+        b'{"t": 1.1, "x": 0.1, "y": 0, "yaw": 0.1, "std_xy": 0.02, "frame": "map", "roll": 0.1, "pitch": 0}\n'
+        b'{"terrain": "sand"}\n{"terrain_changed": true}\n{"t": 1.2, "cmd_v": 0.5, "cmd_omega": 0}\n'
+    )
+
+
+def _requests() -> bytes:
+    return (
+        b'{"predict": {"horizon": 2, "commands": [[8.0, 0.5, 0.1], [8.5, 0.4, 0.0]]}}\n'
+        b'{"predict": {"commands": [[9, 1, 0]]}}\n{"apply": true}\n{"terrain_changed": true}\n'
+    )
+
+
+@functools.cache
+def taught(seconds: float = 12.0) -> Any:
+    """Return a learner that knows a little of a drive."""
+    from slipwise.calibration import make_settings
+    from slipwise.calibration.motion_learner import MotionLearner
+
+    learner = MotionLearner("command", make_settings({"basis": "edd-2"}))
+    learner.start_run("monday")
+    for line in lines_of_drive(seconds).decode().splitlines()[1:]:
+        cells = line.split(",")
+        t, v, omega = (float(cell) for cell in cells[:3])
+        learner.push_command(t, v, omega)
+        learner.push_wheels(t, v, omega)
+        if cells[5]:
+            learner.push_pose(t, *(float(cell) for cell in cells[5:8]))
+    return learner
+
+
+def _saved() -> bytes:
+    """The core's part of a saved learner, without what seals it."""
+    from slipwise import _core
+
+    body = _core.opened(taught().save())
+    return bytes(_core.opened(body[8 + int.from_bytes(body[:8], "little") :]))
+
+
+def _cache() -> bytes:
+    from slipwise.calibration import make_settings
+    from slipwise.live.cache import Cache, CacheKey
+
+    with tempfile.TemporaryDirectory() as folder:
+        settings = make_settings({"basis": "edd-2"})
+        cache = Cache(Path(folder), CacheKey.of("robot", "command", settings))
+        cache.save(taught(), None)
+        return cache.state.read_bytes()
+
+
 def _pgm(kind: str) -> bytes:
     if kind == "P2":
         return b"P2\n# by hand\n6 4\n255\n" + b" ".join([b"254"] * 24) + b"\n"
@@ -226,6 +292,10 @@ _SEEDS: dict[str, tuple[Callable[[], bytes], ...]] = {
     "bin": (lambda: _flight("dataflash"),),
     "tlog": (lambda: _flight("tlog"),),
     "ulg": (lambda: _flight("ulog"),),
+    "lines": (lines_of_drive, _json_lines),
+    "requests": (_requests,),
+    "cache": (_cache,),
+    "learner": (_saved,),
     "foxglove": (lambda: _foxglove("ros-json"), lambda: _foxglove("foxglove-json")),
     "protobuf": (lambda: _foxglove("protobuf"), lambda: _foxglove("transforms")),
 }

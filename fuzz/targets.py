@@ -3,16 +3,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import tempfile
 import warnings
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from seeds import with_sums
+from seeds import lines_of_drive, taught, with_sums
 
-from slipwise.errors import SlipwiseError
+from slipwise import _core
+from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.logs import LogOptions, open_log, save_log
+
+if TYPE_CHECKING:
+    from slipwise.calibration.motion_learner import MotionLearner
 
 OPTIONS = LogOptions(most_unpacked=16.0)
 _ENDINGS = {
@@ -34,6 +40,7 @@ _BESIDE = {  # by target: a file that the one that is read needs
     "kitti": ("input_times.txt", b"".join(b"%.1f\n" % (0.1 * k) for k in range(_ROWS))),
     "kitti-times": ("input.txt", b"".join(b"1 0 0 %.1f 0 1 0 0 0 0 1 0\n" % (0.1 * k) for k in range(_ROWS))),
 }
+NEVER_REFUSED = ("lines", "requests")  # what is wrong with them is counted
 _CONVERTED = 7  # every so many logs are written again too
 
 
@@ -144,8 +151,75 @@ def _read_settings(path: Path) -> None:
     settings.filter_settings()
 
 
+def _survive_lines(path: Path, before: bytes = b"", after: bytes = b"") -> None:
+    """Run a node on the lines: it must end in order, and nothing in it may have failed."""
+    import io
+
+    from slipwise.calibration import make_settings
+    from slipwise.live.build import build_node
+    from slipwise.live.pipe import Pipe
+
+    settings = make_settings({"basis": "edd-2"})
+    lines = io.BytesIO(before + path.read_bytes() + after)
+    built = build_node(Pipe(lines, io.BytesIO()), "command", settings, run="lines")
+    built.node.run()
+    failed = [reason for reason in built.said.counts if reason.endswith(" failed")]
+    assert not failed, [text for _, text in built.said.log() if "failed" in text]
+
+
+def _survive_requests(path: Path) -> None:
+    _survive_lines(path, before=lines_of_drive(), after=b"\n")
+
+
+def _load_cache(path: Path) -> None:
+    from slipwise.calibration import make_settings
+    from slipwise.live.cache import Cache, CacheKey
+
+    with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+        cache = Cache(Path(folder), CacheKey.of("robot", "command", make_settings({"basis": "edd-2"})))
+        cache.state.write_bytes(path.read_bytes())
+        found = cache.load()
+        cache.close()
+    if found.learner is None:
+        raise SettingsError(found.said)
+    _use(found.learner)
+
+
+def _load_learner(path: Path) -> None:
+    """Of a saved learner whose content is wrong and whose checksums are right."""
+    from slipwise.calibration.motion_learner import MotionLearner
+
+    head = _core.opened(taught().save())
+    head = head[: 8 + int.from_bytes(head[:8], "little")]
+    _use(MotionLearner.load(_core.sealed(head + _core.sealed(path.read_bytes()))))
+
+
+def _use(learner: MotionLearner) -> None:
+    """Judge, predict and learn further; a learner of nonsense may say that it cannot."""
+    with contextlib.suppress(SlipwiseError, ValueError):
+        learner.judged_model(limits=False)
+    newest = learner.odometry()
+    t = 0.0 if newest is None else newest.t
+    with contextlib.suppress(SlipwiseError):
+        learner.predict([(t + 0.1, 0.5, 0.1)], horizon=1.0)
+    for k in range(1, 80):
+        now = t + 0.05 * k
+        learner.push_command(now, 0.5, 0.1)
+        learner.push_wheels(now, 0.5, 0.1)
+        learner.push_pose(now, 0.02 * k, 0.0, 0.005 * k)
+    learner.odometry()
+    learner.motion_monitor()
+    learner.events()
+    learner.start_run("another")
+    learner.save()
+
+
 _READERS: dict[str, Callable[[Path], None]] = {
     "calibrate": _learn,
+    "lines": _survive_lines,
+    "requests": _survive_requests,
+    "cache": _load_cache,
+    "learner": _load_learner,
     "kitti": _read_poses,
     "kitti-times": _read_times,
     "gpx": _read_poses,

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from mutations import mutated
 from seeds import TARGETS, seeds
-from targets import Target
+from targets import NEVER_REFUSED, Target
 
 ROOT = Path(__file__).parents[3]
 
@@ -23,10 +23,12 @@ def test_the_seeds_are_read_and_their_changes_are_read_or_refused(name: str) -> 
         assert target.run(seed) == ""
     changed = [mutated(draw.choice(corpus), draw, corpus) for _ in range(15)]
     refused = sum(bool(target.run(data)) for data in changed)
-    while not refused and len(changed) < 60:  # what comes by radio is read in spite of most damage
+    while (
+        not refused and name not in NEVER_REFUSED and len(changed) < 60
+    ):  # what comes by radio is read in spite of most damage
         changed.append(mutated(draw.choice(corpus), draw, corpus))
         refused += bool(target.run(changed[-1]))
-    assert refused
+    assert refused or name in NEVER_REFUSED
     assert sum(data not in corpus for data in changed) > 10
 
 
