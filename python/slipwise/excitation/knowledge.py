@@ -71,7 +71,14 @@ def prior_knowledge(space: CommandSpace, *, basis: str = BASIS, dynamics: bool =
 
 
 def knowledge_of(model: Model) -> Knowledge:
-    """Return what a learned model knows of base_link's motion, wherever its pose sensor sits."""
+    """Return what a learned model knows of base_link's motion, wherever its pose sensor sits.
+
+    Raises:
+        ModelError: it takes throttle and steering, or has a force that is fixed to the map: where the robot
+            looks is not known before a drive.
+    """
+    model.refuse_throttle("designed drives")
+    model.refuse_heading("designed drives")
     body = model.body
     return Knowledge(
         body.motion, body.mean, body.covariance, body.covariance_over(SPREAD_SECONDS), body.limits

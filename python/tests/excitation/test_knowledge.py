@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from sample_models import make_model, named
 
-from slipwise.errors import SettingsError
+from slipwise import _core
+from slipwise.errors import ModelError, SettingsError
 from slipwise.excitation import CommandSpace, knowledge_of, prior_knowledge
 
 SPACE = CommandSpace(3.0, 2.0)
@@ -44,3 +47,10 @@ def test_robots_differ_by_a_factor_of_what_is_likely() -> None:
     knowledge = prior_knowledge(SPACE)
     np.testing.assert_allclose(knowledge.spread_by(2.0).spread, 4.0 * knowledge.spread)
     np.testing.assert_array_equal(knowledge.spread_by(2.0).covariance, knowledge.covariance)
+
+
+def test_a_force_that_is_fixed_to_the_map_is_refused() -> None:
+    made = named("edd-2")
+    windy = make_model(replace(made, basis=_core.with_force(made.basis, _core.ForceFrame.World)))
+    with pytest.raises(ModelError, match="designed drives know no heading over the map"):
+        knowledge_of(windy)
