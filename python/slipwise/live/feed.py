@@ -66,5 +66,4 @@ class Feed:
                 on_sample(sample)
         except Exception as problem:  # the node's thread raises it
             self._failure = problem
-        finally:
-            self._done.set()
+        self._done.set()

@@ -73,8 +73,7 @@ class Pipe:
                     on_sample(sample)
         except Exception as problem:  # the node's thread raises it
             self._failure = None if self._stopped.is_set() else problem
-        finally:
-            self._done.set()
+        self._done.set()
 
 
 def bounded_lines(stream: IO[bytes]) -> Iterator[bytes]:
