@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import csv
 import gzip
-from collections.abc import Callable, Iterator, Mapping
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -55,12 +56,12 @@ def moved_log(log: Log, move: Move) -> Log:
     return replace(log, runs=tuple(run(each) for each in log.runs))
 
 
-def moved_table(path: Path, to: Path, move: Move) -> Path:
-    """Write a table of measurements moved, `to` a file; other columns stay as they are."""
+def moved_table(path: Path, to: Path, move: Move, left_out: Collection[str] = ()) -> Path:
+    """Write a table of measurements moved, `to` a file, without some columns; others stay as they are."""
     opened = gzip.open if path.suffix == ".gz" else open
     with opened(path, "rt", newline="") as file:
         rows = list(csv.DictReader(file))
-    c, s = np.cos(move.turn), np.sin(move.turn)
+    c, s = math.cos(move.turn), math.sin(move.turn)
     for row in rows:
         if row["t"]:
             row["t"] = repr(float(row["t"]) + move.seconds)
@@ -70,7 +71,8 @@ def moved_table(path: Path, to: Path, move: Move) -> Path:
         if row.get("yaw"):
             row["yaw"] = repr(float(row["yaw"]) + move.turn)
     with to.open("w", newline="") as file:
-        writer = csv.DictWriter(file, list(rows[0]))
+        columns = [name for name in rows[0] if name not in left_out]
+        writer = csv.DictWriter(file, columns, extrasaction="ignore")
         writer.writeheader()
         writer.writerows(rows)
     return to

@@ -2,6 +2,8 @@
 // Stamps go in and come out as they were.
 #include <doctest/doctest.h>
 
+#include <initializer_list>
+
 #include "slipwise/online/run_clock.hpp"
 
 namespace slipwise {
