@@ -13,11 +13,11 @@
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/actuator/measured_start.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kNoTime = 1e-6;      // [s]; stamps that count from 1970 are no finer
 constexpr int kMostPieces = 2000;     // of one ramp, however slow
 constexpr double kLongestRamp = 1e6;  // [s]; nobody waits longer
 
@@ -101,7 +101,7 @@ InputHistory limited_pieces(const InputHistory& commands, CommandLimiter limiter
       if (next - now > kMostPieces * piece) {
         piece = std::max(piece, std::min(limiter.seconds_left(), kLongestRamp) / kMostPieces);
       }
-      for (int k = 0; k <= kMostPieces && next - now > kNoTime; ++k) {
+      for (int k = 0; k <= kMostPieces && later(next, now); ++k) {
         const double taken = std::min(piece, next - now);
         reach(limiter, now + taken);
         if (!limiter.ramps()) {
@@ -111,7 +111,7 @@ InputHistory limited_pieces(const InputHistory& commands, CommandLimiter limiter
         now += taken;
       }
     }
-    if (next - now > kNoTime) {
+    if (later(next, now)) {
       push(now, limiter.target());
     }
   }
