@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from slipwise.errors import SlipwiseError
+from slipwise.extras import to_install
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -24,6 +25,6 @@ def data_frame(columns: Mapping[str, ArrayLike]) -> pd.DataFrame:
         import pandas as pd
     except ImportError as problem:
         raise SlipwiseError(
-            "a data frame needs pandas, which is not installed", advice='pip install "slipwise[pandas]"'
+            "a data frame needs pandas, which is not installed", advice=to_install("pandas")
         ) from problem
     return pd.DataFrame(dict(columns))

@@ -7,6 +7,7 @@ from collections.abc import Callable, Generator, Iterable
 from typing import Any
 
 from slipwise.errors import SettingsError, SlipwiseError
+from slipwise.extras import to_install
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.learned_rows import LogRows, learn_task
 from slipwise.fleet.scheduler import DIED, Outcome
@@ -31,7 +32,7 @@ class DaskScheduler:
         try:
             import distributed
         except ImportError as problem:
-            raise SlipwiseError("Dask is not installed", advice='pip install "slipwise[fleet]"') from problem
+            raise SlipwiseError("Dask is not installed", advice=to_install("fleet")) from problem
         try:
             client: Any = distributed.Client
             self._client: Any = client(address, timeout=PATIENCE)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from slipwise.errors import LogError
+from slipwise.extras import to_install
 from slipwise.logs.bag_file import MCAP_MAGIC, BagFile, RawMessage
 from slipwise.logs.foxglove_messages import as_ros, from_json, ros_type
 from slipwise.logs.left_out import Tally
@@ -125,7 +126,7 @@ class FoxgloveFile(BagFile):
         except LogError:
             raise
         except ImportError as error:
-            advice = "pip install 'slipwise[foxglove]'"
+            advice = to_install("foxglove")
             raise LogError(
                 "mcap-protobuf-support is not installed", where=str(file), advice=advice
             ) from error

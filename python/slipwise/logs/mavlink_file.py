@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.extras import to_install
 from slipwise.logs.flight_roles import FlightMessages
 
 #: Fields of DataFlash messages, in the units that pymavlink gives: s, m, degrees.
@@ -76,7 +77,7 @@ def _reading(path: Path) -> Iterator[None]:
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             yield
     except ImportError as error:
-        advice = "pip install 'slipwise[mavlink]'"
+        advice = to_install("mavlink")
         raise LogError("pymavlink is not installed", where=str(path), advice=advice) from error
     except Exception as error:  # damaged bytes make the library raise anything
         reason = f"{type(error).__name__} {error}"[:200]

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from slipwise.addresses import remote_url, shown
 from slipwise.errors import LogError
+from slipwise.extras import to_install
 from slipwise.logs.piped import regular_file
 
 if TYPE_CHECKING:
@@ -166,9 +167,7 @@ def _file_system(scheme: str, where: str, *, total: float) -> AbstractFileSystem
         return fsspec.filesystem(scheme, **options)
     except ImportError as error:
         other = _PACKAGES.get(scheme)
-        advice = (
-            "pip install 'slipwise[remote]'" + (f" {other}" if other else "") + ", or copy the file yourself"
-        )
+        advice = to_install("remote") + (f" {other}" if other else "") + ", or copy the file yourself"
         raise LogError(f"reading {scheme}:// needs another package", where=where, advice=advice) from error
 
 

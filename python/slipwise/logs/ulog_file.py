@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.extras import to_install
 from slipwise.logs.flight_roles import FlightMessages
 
 #: The topics that say anything about a rover's motion; those of several versions of PX4.
@@ -43,9 +44,7 @@ def read_ulog(path: Path) -> FlightMessages:
             topics = {item.name: _columns(item) for item in log.data_list if item.multi_id == 0}
             parameters = {str(name): float(value) for name, value in log.initial_parameters.items()}
     except ImportError as error:
-        raise LogError(
-            "pyulog is not installed", where=str(path), advice="pip install 'slipwise[px4]'"
-        ) from error
+        raise LogError("pyulog is not installed", where=str(path), advice=to_install("px4")) from error
     except Exception as error:  # damaged bytes make the library raise anything
         reason = f"{type(error).__name__} {error}"[:200]
         raise LogError(

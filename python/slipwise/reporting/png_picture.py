@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from slipwise.errors import SlipwiseError
+from slipwise.extras import to_install
 from slipwise.files import write_whole
 
 DPI = 150
-ADVICE = 'pip install "slipwise[plot]"'
+ADVICE = to_install("plot")
 _COLOURS = (128, 64, 32, 16)  # of a picture's palette, the most first
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from slipwise.errors import SettingsError
+from slipwise.extras import to_install
 from slipwise.surfaces.examples import SlipExamples
 from slipwise.surfaces.surface import SurfacePrediction, drive_arrays, not_fitted
 
@@ -36,7 +37,7 @@ class GaussianProcessOptions:
 class GaussianProcessSurface:
     """One Gaussian process per channel; its mean returns to no slip far from the examples.
 
-    Needs scikit-learn: `pip install slipwise[gp]`.
+    Needs scikit-learn: the extra `gp`.
     """
 
     def __init__(self, *, options: GaussianProcessOptions = GaussianProcessOptions()) -> None:
@@ -203,9 +204,7 @@ def _regressor_class() -> Any:
     try:
         from sklearn.gaussian_process import GaussianProcessRegressor
     except ImportError as problem:
-        raise SettingsError(
-            "the Gaussian process needs scikit-learn", advice="install it with: pip install 'slipwise[gp]'"
-        ) from problem
+        raise SettingsError("the Gaussian process needs scikit-learn", advice=to_install("gp")) from problem
     return GaussianProcessRegressor
 
 

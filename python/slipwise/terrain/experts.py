@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import SlipwiseError
+from slipwise.extras import to_install
 from slipwise.terrain.kernel_expert import KernelExpert, fit_kernel_expert
 from slipwise.terrain.tree_expert import LEAF, Tree, TreeExpert
 from slipwise.terrain.windows import Windows
@@ -83,9 +84,7 @@ def _fit_trees(
     try:
         from sklearn.ensemble import ExtraTreesClassifier
     except ImportError as error:
-        raise MissingLibraryError(
-            "scikit-learn is not installed", advice="pip install 'slipwise[terrain]'"
-        ) from error
+        raise MissingLibraryError("scikit-learn is not installed", advice=to_install("terrain")) from error
     forest = ExtraTreesClassifier(
         TREES,
         max_features=FEATURES_TRIED,

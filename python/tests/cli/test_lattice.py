@@ -43,7 +43,7 @@ def test_without_matplotlib_all_but_the_picture_is_written_and_that_is_said(
     result = slipwise(*arguments)
     assert (result.code, result.err) == (0, "")
     assert sorted(path.name for path in Path("out/lattice").iterdir()) == ["curvature.csv", "lattice.json"]
-    assert 'The picture was left out: it needs Matplotlib (pip install "slipwise[plot]").' in result.out
+    assert "The picture was left out: it needs Matplotlib (pip install 'matplotlib>=3.8')." in result.out
     refused = slipwise(*arguments, "--picture")
     assert refused.code == 2
     assert "pictures need Matplotlib, which is not installed" in refused.line

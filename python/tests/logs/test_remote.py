@@ -127,7 +127,7 @@ def test_a_store_whose_package_is_missing_is_named(monkeypatch: pytest.MonkeyPat
         raise ImportError("Install s3fs to access S3")
 
     monkeypatch.setattr(fsspec, "filesystem", missing)
-    with pytest.raises(LogError, match=r"s3:// needs another package .*slipwise\[remote\].* s3fs"):
+    with pytest.raises(LogError, match=r"s3:// needs another package .*fsspec.* s3fs"):
         staged("s3://bucket/none.csv")
 
 

@@ -66,5 +66,5 @@ def test_without_a_sensor_there_is_no_expert(windows: Windows) -> None:
 
 def test_without_scikit_learn_the_extra_is_named(windows: Windows, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sklearn.ensemble", None)
-    with pytest.raises(MissingLibraryError, match=r"pip install 'slipwise\[terrain\]'"):
+    with pytest.raises(MissingLibraryError, match="pip install 'scikit-learn"):
         fit_experts(windows, tuple(SURFACES), SHAPES, 0)

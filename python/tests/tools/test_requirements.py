@@ -7,6 +7,8 @@ import tomllib
 import pytest
 from tools.requirements import ROOT, requirements
 
+from slipwise.extras import to_install
+
 #: Extras behind the project's name, or behind the dot of a checkout: slipwise[gp], ".[plot,sim]".
 EXTRAS = re.compile(r"(?:\bslipwise|(?<![\w\])])\.)\[([a-z][a-z, -]*)\]")
 PROJECT = {
@@ -37,12 +39,18 @@ def test_every_extra_that_a_page_or_an_error_names_exists() -> None:
     pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.md")]
     named = {
         extra.strip()
-        for source in [*pages, *(ROOT / "python/slipwise").rglob("*.py")]
-        for names in EXTRAS.findall(source.read_text(encoding="utf-8"))
+        for page in pages
+        for names in EXTRAS.findall(page.read_text(encoding="utf-8"))
         for extra in names.split(",")
     }
-    assert {"gp", "pandas", "plot"} <= named
+    for source in (ROOT / "python/slipwise").rglob("*.py"):
+        named |= set(re.findall(r'to_install\("(\w+)"\)', source.read_text(encoding="utf-8")))
+    assert {"live", "plot", "terrain"} <= named
     assert named <= set(project["project"]["optional-dependencies"])
+
+
+def test_what_an_extra_needs_is_installed_by_name() -> None:
+    assert to_install("live") == "pip install 'starlette>=0.40' 'uvicorn>=0.30'"
 
 
 @pytest.mark.parametrize(

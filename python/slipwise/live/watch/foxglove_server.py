@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from slipwise.errors import OutputError, SettingsError
+from slipwise.extras import to_install
 from slipwise.live.outputs import Note, Odometry, Output, Path, Status, next_moves_content
 from slipwise.live.ros_messages import stamp_ns
 from slipwise.live.watch.foxglove_schemas import SCHEMAS, nis_of, parameters_of, slip_of, state_of
@@ -52,7 +53,7 @@ class FoxgloveServer:
         except ImportError as problem:
             raise SettingsError(
                 "Foxglove needs a package that is missing: foxglove-sdk",
-                advice="pip install 'slipwise[viz]'",
+                advice=to_install("viz"),
             ) from problem
         self._make, self._name = foxglove_scene, name
         self._context = foxglove.Context()  # its channels end with it

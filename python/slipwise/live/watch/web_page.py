@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
 from slipwise.errors import OutputError, SettingsError
+from slipwise.extras import to_install
 from slipwise.live.outputs import Output
 from slipwise.live.watch.history import History
 
@@ -48,7 +49,7 @@ class WebPage:
         except ImportError as problem:
             raise SettingsError(
                 f"the page needs a package that is missing: {problem.name}",
-                advice="pip install 'slipwise[live]'",
+                advice=to_install("live"),
             ) from problem
         self._socket = _bound(host, port)
         self._history, self._ending = History(), threading.Event()
