@@ -147,7 +147,7 @@ def test_without_scikit_learn_the_gaussian_process_says_how_to_get_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "sklearn.gaussian_process", None)
-    with pytest.raises(SettingsError, match="needs scikit-learn.*pip install"):
+    with pytest.raises(SettingsError, match=r"needs scikit-learn.*pip install"):
         judged(slipping(), (PROCESS,))
     assert judged(slipping(), ("surface-bayesian",)).scores
 

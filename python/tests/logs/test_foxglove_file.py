@@ -191,5 +191,5 @@ def test_what_unpacks_to_too_much_is_refused(tmp_path: Path) -> None:
 def test_without_the_library_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write_ros_json(tmp_path / "drive.mcap")
     monkeypatch.setitem(sys.modules, "mcap_protobuf.decoder", None)
-    with pytest.raises(LogError, match="is not installed .*pip install 'mcap-protobuf-support"):
+    with pytest.raises(LogError, match=r"is not installed .*pip install 'mcap-protobuf-support"):
         open_log(path)
