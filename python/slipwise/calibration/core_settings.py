@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from slipwise import _core
-from slipwise.calibration.settings import Settings
+from slipwise.calibration.settings import AUTO_BASES, Settings
 from slipwise.calibration.source_tables import core_sources
 from slipwise.errors import SettingsError
 
@@ -84,8 +84,8 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
 
 
 def _behind_curves(hypotheses: _core.HypothesisSettings, settings: Settings) -> None:
-    """Expect little slip and lag where a car's curves hold most of both."""
-    if settings.basis == "auto":
+    """Expect little slip and lag where a car's curves hold most of both; bases that somebody chose stay."""
+    if settings.basis == "auto" and set(AUTO_BASES) <= set(settings.auto.bases):
         hypotheses.bases = [basis for basis in hypotheses.bases if basis.name in _CAR_BASES]
     _change_prior(hypotheses, time_constant=_CAR_LAG, delay=_CAR_DELAY)
 

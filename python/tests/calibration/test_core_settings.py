@@ -7,7 +7,7 @@ import pytest
 
 from slipwise import _core
 from slipwise.calibration import Settings, make_settings
-from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.core_settings import car_of, core_settings
 from slipwise.errors import SettingsError
 
 HORIZONS = (1.0, 2.0, 5.0)
@@ -81,3 +81,13 @@ def test_the_pose_of_the_sensor_is_learned_only_where_that_is_asked() -> None:
 def test_an_unknown_basis_is_refused_before_anything_is_pushed() -> None:
     with pytest.raises(SettingsError, match="magic-7"):
         core_settings(make_settings({"basis": "magic-7"}), "wheel", HORIZONS)
+
+
+@pytest.mark.parametrize("bases", [["ipem-9"], ["full-linear-6", "odd-even-10"], ["none", "edd-2"]])
+def test_bases_that_are_chosen_are_those_of_a_car_too(bases: list[str]) -> None:
+    settings = make_settings({"log": {"vehicle": "dart"}, "auto": {"bases": bases}})
+    car = core_settings(settings, "command", HORIZONS, car=car_of(settings))
+    assert [basis.name for basis in car.hypotheses.bases] == bases
+    default = make_settings({"log": {"vehicle": "dart"}})
+    fewer = core_settings(default, "command", HORIZONS, car=car_of(default)).hypotheses.bases
+    assert 0 < len(fewer) < len(default.bases())
