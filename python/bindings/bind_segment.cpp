@@ -130,12 +130,12 @@ void bind_segment(nb::module_& m) {
              const BodyTwist& initial) {
             Segment known = segment;
             known.initial = initial;
-            known.known = MeasuredActuator{std::move(twist), until};
+            known.known = MeasuredActuator{.twist = std::move(twist), .until = until, .any_inputs = true};
             return known;
           },
           "twist"_a, "until"_a, "initial"_a,
           "The same segment where the drive's twist is known until a moment in input stamps [s], `initial` at that "
-          "moment.")
+          "moment, and any inputs may follow.")
       .def(
           "with_sensor",
           [](const Segment& segment, const Pose2& sensor) {

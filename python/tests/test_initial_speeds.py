@@ -139,6 +139,22 @@ def test_the_case_of_the_two_commands() -> None:
     assert np.hypot(*np.diff(path.poses[:, :2], axis=0).T).max() <= 0.1 + 1e-9
 
 
+@pytest.mark.parametrize("delay", [0.001, 0.3])
+def test_a_measured_speed_that_contradicts_the_history_is_not_overtaken(delay: float) -> None:
+    """Commanded 0.5 m/s for long, measured at 1 m/s, commanded 1 m/s from now on."""
+    for lags, fraction in product((*LAGS, (0.1, 9.0)), (0.05, *FRACTIONS)):
+        model = two_modes(lags, fraction, 1.0, delay)
+        path = predict(
+            model, [(-60.0, 0.5, 0.0), (0.0, 1.0, 0.0)], horizon=5.0, start=0.0, initial=(1.0, 0.0)
+        )
+        start = Start(drive=(1.0, 0.0), past=np.tile([0.5, 0.0], (20, 1)))
+        batch = rollout(model, np.tile([1.0, 0.0], (1, 50, 1)), 0.1, start=start).path
+        assert batch is not None
+        for poses in (path.poses, np.vstack((np.zeros((1, 3)), batch[:, :, 0].T))):
+            assert speeds(poses, 0.1).max() <= 1.0 + 1e-9
+            assert poses[-1, 0] <= 5.0 + 1e-9
+
+
 def test_a_measured_speed_that_the_commands_explain_changes_nothing() -> None:
     model = two_modes((0.3, 1.5), 0.4, 0.8, 0.2)
     rows = np.array([(-9.0, 0.0, 0.0), (-2.0, 1.0, 0.0), (-0.6, 0.2, 0.0), (0.0, 0.5, 0.0)])

@@ -137,11 +137,11 @@ class ActuatorWalk {
   }
 
   /// An axis where the actuator starts, as it was measured.
-  static void start_at(const DelayedCursor& cursor, Axis& axis, double measured) {
+  void start_at(const DelayedCursor& cursor, Axis& axis, double measured) const {
     if (cursor.before_first()) {
       axis.keep(measured);
     } else {
-      axis.measure(measured);
+      axis.measure(measured, !window_.known || !window_.known->any_inputs);
     }
   }
 

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,41 @@ TEST_CASE("under a constant command the speed stays between rest and the command
   for_all_points([](const Point& at) {
     CAPTURE(text_of(at));
     check_law(at, held(at), 1e-9);
+  });
+}
+
+/// Commands that change every 0.4 s, within 0.3 and 0.9 of the point's, that held the first for long before.
+InputHistory changing(const Point& at) {
+  std::vector<double> t{-100.0};
+  std::vector<BodyTwist> twist{{0.3 * at.command, 0.0, 0.15 * at.command}};
+  for (int i = 0; 0.4 * i < at.sent + 4.0; ++i) {
+    const double part = 0.3 + 0.15 * ((7 * i + 3) % 5);
+    t.push_back(0.4 * i);
+    twist.push_back({part * at.command, 0.0, 0.5 * part * at.command});
+  }
+  return {t, twist};
+}
+
+TEST_CASE("where any commands may follow, the speed stays between the measured one and those they lead to") {
+  for_all_points([](const Point& at) {
+    CAPTURE(text_of(at));
+    const double goal = at.gain * at.command, low = std::min(0.3, at.part), high = std::max(0.9, at.part);
+    const BodyTwist measured{at.part * goal, 0.0, 0.5 * at.part * goal};
+    const auto twist = std::make_shared<const InputHistory>(std::vector{-100.0}, std::vector{measured});
+    const auto drive =
+        actuator_steps(changing(at), actuator_of(at),
+                       {.start = at.sent,
+                        .end = at.sent + 3.0,
+                        .initial = measured,
+                        .known = MeasuredActuator{.twist = twist, .until = at.sent, .any_inputs = true}});
+    for (const ActuatorStep& step : drive.steps) {
+      if (step.duration >= 1e-9) {
+        for (const double part : {step.forward / step.duration / goal, 2.0 * step.turn / step.duration / goal}) {
+          REQUIRE(part >= low - 1e-9);
+          REQUIRE(part <= high + 1e-9);
+        }
+      }
+    }
   });
 }
 

@@ -195,8 +195,8 @@ static inline slipwise_real slipwise_lesser(slipwise_real a, slipwise_real b) { 
 static inline slipwise_real slipwise_greater(slipwise_real a, slipwise_real b) { return a > b ? a : b; }
 
 /* The whole was measured while `input` acts, or before any does: then the channel is settled. The slow mode is what the
- * fast one does not explain, within the range of what it would be by the inputs alone, where it settles, and the value
- * without what the fast one settles at: so a constant input carries the drive to its own speed, and not beyond. */
+ * fast one does not explain, within the range of what it would be by the inputs alone, where it settles, and its
+ * fraction of the value: so no inputs carry the drive beyond the value, themselves and the inputs before. */
 static inline void slipwise_measured(slipwise_channel *channel, const slipwise_response *response,
                                      slipwise_real value, slipwise_real input, int acts) {
   const slipwise_real fast_fraction = slipwise_fast_fraction(response);
@@ -207,9 +207,9 @@ static inline void slipwise_measured(slipwise_channel *channel, const slipwise_r
     channel->slow = (1 - fast_fraction) * value;
   } else {
     const slipwise_channel settled = slipwise_settled(response, input);
-    const slipwise_real left = value - channel->fast, carried = value - settled.fast;
-    const slipwise_real low = slipwise_lesser(channel->slow, slipwise_lesser(settled.slow, carried));
-    const slipwise_real high = slipwise_greater(channel->slow, slipwise_greater(settled.slow, carried));
+    const slipwise_real left = value - channel->fast, share = (1 - fast_fraction) * value;
+    const slipwise_real low = slipwise_lesser(channel->slow, slipwise_lesser(settled.slow, share));
+    const slipwise_real high = slipwise_greater(channel->slow, slipwise_greater(settled.slow, share));
     channel->slow = slipwise_lesser(slipwise_greater(left, low), high);
     channel->fast = value - channel->slow;
   }

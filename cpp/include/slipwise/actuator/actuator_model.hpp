@@ -35,6 +35,7 @@ inline constexpr Eigen::Index kActuatorParameters = 11;  ///< in the order of th
 struct MeasuredActuator {
   std::shared_ptr<const InputHistory> twist;  ///< measured, held between samples
   double until;                               ///< [s] in input stamps; nothing later is used
+  bool any_inputs = false;  ///< any inputs may follow, not only those that the drive was given: none overspeeds it
 };
 
 /// A stretch of time, in pose stamps, and what is known of the drive at its start.

@@ -95,29 +95,24 @@ class AxisStepper {
     moves_ = moves_ || input.value != 0.0 || !input.derivative.isZero(0.0);
   }
 
-  /// The whole was measured while the held input acts.
-  void measure(double value) {
+  /// The whole was measured while the held input acts. What the inputs leave unexplained lasts as the slow mode does;
+  /// unless it `lasts`, only so much of it that inputs to come do not carry the whole beyond themselves and it.
+  void measure(double value, bool lasts) {
     moves_ = moves_ || value != 0.0;
     if (!response_.has_slow_mode()) {
       fast_ = {.value = value};
       return;
     }
-    slow_ = slow_mode<Value>(
-        {.left = value - fast_, .modelled = slow_, .settled = towards_slow_, .carried = value - towards_fast_});
+    const Value bound = lasts ? value - towards_fast_ : kept_slow(value);
+    slow_ = slow_mode<Value>({.left = value - fast_, .modelled = slow_, .settled = towards_slow_, .bound = bound});
     fast_ = value - slow_;
   }
 
   /// It was measured before any input acts: what it does is held.
   void keep(double value) {
     moves_ = value != 0.0;
-    fast_ = {.value = (1.0 - response_.fraction()) * value};
-    slow_ = {.value = response_.fraction() * value};
-    if constexpr (N > 0) {
-      if (places_.slow_fraction != kNotAmong && response_.has_slow_mode()) {
-        fast_.derivative[places_.slow_fraction] = -value;
-        slow_.derivative[places_.slow_fraction] = value;
-      }
-    }
+    slow_ = kept_slow(value);
+    fast_ = value - slow_;
     towards_fast_ = fast_;
     towards_slow_ = slow_;
   }
@@ -175,6 +170,17 @@ class AxisStepper {
       }
     }
     return part;
+  }
+
+  /// Of a speed that is kept for long, what the slow mode holds.
+  Value kept_slow(double speed) const {
+    Value share{.value = response_.fraction() * speed};
+    if constexpr (N > 0) {
+      if (places_.slow_fraction != kNotAmong && response_.has_slow_mode()) {
+        share.derivative[places_.slow_fraction] = speed;
+      }
+    }
+    return share;
   }
 
   static double advance_value(Value& mode, const Value& towards, const LagDecay& decay) {

@@ -68,12 +68,12 @@ ActuatorStart actuator_start(const ActuatorSchedule& actuator, const ChannelTimi
   }
   const double warm_up = parts_warm_up(actuator.v.response, actuator.omega.response);
   const StartInputs<Command> inputs{channel, actuator.period, oldest, keeping, command};
-  const double settled = response.gain * inputs.now(), fraction = response.fraction();
+  const double fraction = response.fraction();
   const MeasuredChannel<double> measured{
       .left = drive - response.fast_fraction() * inputs.lagged(response.time_constant, warm_up),
       .modelled = fraction * response.gain * inputs.lagged(response.slow_time_constant, warm_up),
-      .settled = fraction * settled,
-      .carried = drive - (1.0 - fraction) * settled};
+      .settled = fraction * response.gain * inputs.now(),
+      .bound = fraction * drive};
   const double slow = slow_mode(measured);
   return {.commanded = keeping, .fast = drive - slow, .slow = slow};
 }
