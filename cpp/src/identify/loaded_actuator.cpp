@@ -27,6 +27,11 @@ bool axes_of(const std::vector<std::size_t>& live, const ChannelModel& model) {
   return std::ranges::adjacent_find(sorted) == sorted.end() && (sorted.empty() || sorted.back() < model.parts.size());
 }
 
+/// What was found, and not taken from there since.
+bool is_whole(const ChannelRun& run, const ChannelModel& model) {
+  return axes_of(run.live, model) && run.joint.mean.size() == kChannelParameters + kAxisStates * std::ssize(run.live);
+}
+
 }  // namespace
 
 void ActuatorChannel::check_loaded(const ActuatorChannel& made) const {
@@ -50,9 +55,8 @@ void ChannelFit::check_loaded(const ActuatorChannel& made, std::size_t past) con
   require(model_ && model_->parts == made.model().parts && model_->prior.mean.size() == kChannelParameters &&
               size_ > 0.0 && search_.has_size(kChannelParameters) && done_ <= past,
           "the fit of an actuator has another model");
-  require(
-      (best_ || walk_) && (!best_ || (at_best_.gradient.size() == kChannelParameters && axes_of(best_->live, *model_))),
-      "the fit of an actuator has lost what it found");
+  require((best_ || walk_) && (!best_ || (at_best_.gradient.size() == kChannelParameters && is_whole(*best_, *model_))),
+          "the fit of an actuator has lost what it found");
   if (walk_) {
     walk_->check_loaded(*model_);
   }
@@ -62,7 +66,7 @@ void ChannelRefit::check_loaded(const ActuatorChannel& made, std::size_t past) c
   channel_.check_loaded(made);
   require(model_ && model_->parts == made.model().parts && size_ > 0.0 && count_ <= past && done_ <= past,
           "the refit of an actuator is of windows that are not kept");
-  require(!first_ || axes_of(first_->live, *model_), "the refit of an actuator follows other axes");
+  require(!first_ || !fit_ || is_whole(*first_, *model_), "the refit of an actuator has lost its first fit");
   if (fit_) {
     fit_->check_loaded(made, count_);
   }
