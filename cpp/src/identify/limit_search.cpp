@@ -21,6 +21,7 @@ constexpr int kMostLimits = 8;
 constexpr int kRounds = 3;  // of adding; what was dropped may have stood in the way
 constexpr int kShortRefinement = 4;
 constexpr int kLongRefinement = 15;
+constexpr double kPolished = 1e-5;    // of -2 log likelihood; a hundredth of a standard deviation gains 1e-4
 constexpr double kWorthMoving = 2.0;  // of -2 log likelihood
 constexpr std::array kSeparationFactors{0.98, 1.02};
 constexpr double kPruningBound = 50.0;  // the same; polishing does not gain as much
@@ -367,7 +368,10 @@ LimitSearch find_limits(std::span<const WheelRecord> records, const PriorSetting
   }
   Search search(records, fit, settings.least_gain);
   const LimitedActuator plain = baseline_drive(fit);
-  const ScoredActuator best = search.or_all_at_once(search.run(before ? with_gain_at_sides(*before) : plain), plain);
+  ScoredActuator best = search.or_all_at_once(search.run(before ? with_gain_at_sides(*before) : plain), plain);
+  if (!unlimited(best.drive.limits)) {  // what is found hangs on no step that the search just did not take
+    best = fit.refine(best.drive, kLongRefinement, std::numeric_limits<double>::infinity(), kPolished);
+  }
   LimitSearch result{.drive = best.drive, .found = {}, .wheel_separation_std = 0.0, .reach = {}};
   if (!unlimited(best.drive.limits)) {
     result.found = search.found(best);

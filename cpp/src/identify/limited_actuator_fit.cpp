@@ -24,7 +24,6 @@ constexpr int kOutputs = 2;
 constexpr int kAttempts = 6;              // of a step, each shorter, on average
 constexpr double kLeastPrecision = 1e-9;  // of a parameter that nothing tells of
 constexpr double kLongestStep = 0.7;      // of a parameter
-constexpr double kLeastGain = 0.1;        // of -2 log likelihood; a step that gains less was the last
 
 /// The likeliest scale of Student t residuals.
 double likeliest_scale(const Eigen::Ref<const Eigen::VectorXd>& residual) {
@@ -259,10 +258,11 @@ NormalEquations LimitedActuatorFit::equations(const FittedActuator& at, const st
   return equations;
 }
 
-ScoredActuator LimitedActuatorFit::refine(const LimitedActuator& drive, int steps, double wanted) const {
+ScoredActuator LimitedActuatorFit::refine(const LimitedActuator& drive, int steps, double wanted,
+                                          double least_gain) const {
   const std::vector<int> free = free_parameters(drive);
   LimitParameters p = parameters_of(drive);
-  GaussNewton search(p(free), {.iterations = steps * kAttempts, .absolute = kLeastGain, .longest_step = kLongestStep});
+  GaussNewton search(p(free), {.iterations = steps * kAttempts, .absolute = least_gain, .longest_step = kLongestStep});
   FittedActuator best = fitted(drive);
   search.judge(best.loss.total);
   NormalEquations at_best = equations(best, free);

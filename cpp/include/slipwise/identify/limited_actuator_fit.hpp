@@ -79,9 +79,10 @@ class LimitedActuatorFit {
   LimitedActuator start() const;
   ScoredActuator scored(const LimitedActuator& drive) const;
   /// Over the actuator and over the limits that limit anything, dead-bands held. Steps gain less and less: it stops
-  /// where all that are left, if they gained as much as the last, came to no less than `wanted`.
+  /// where all that are left, if they gained as much as the last, came to no less than `wanted`, or where one gained
+  /// less than `least_gain` of -2 log likelihood.
   ScoredActuator refine(const LimitedActuator& drive, int steps,
-                        double wanted = std::numeric_limits<double>::infinity()) const;
+                        double wanted = std::numeric_limits<double>::infinity(), double least_gain = 0.1) const;
   /// Standard deviation of each smooth limit of each axis (saturation, slew rates), robust against residuals
   /// that are alike or of unequal size; zero for what limits nothing, and for dead-bands.
   struct Spread {
