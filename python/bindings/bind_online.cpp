@@ -134,7 +134,8 @@ void bind_results(nb::module_& m) {
       .def_ro("seconds", &LearnedModel::seconds)
       .def_ro("segments", &LearnedModel::segments)
       .def_ro("rejected", &LearnedModel::rejected)
-      .def_ro("car", &LearnedModel::car);
+      .def_ro("car", &LearnedModel::car)
+      .def_ro("evidence", &LearnedModel::evidence);
 }
 
 void bind_events(nb::module_& m) {
@@ -210,6 +211,7 @@ void bind_online(nb::module_& m) {
       .value("Gyro", Stream::Gyro);
   bind_settings(m);
   bind_recordings(m);
+  bind_evidence(m);
   bind_results(m);
   bind_events(m);
   bind_odometry(m);

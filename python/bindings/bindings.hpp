@@ -27,6 +27,7 @@ void bind_terrain(nanobind::module_& m);
 void bind_surfaces(nanobind::module_& m);
 void bind_dynamics(nanobind::module_& m);
 void bind_recordings(nanobind::module_& m);
+void bind_evidence(nanobind::module_& m);
 void bind_sources(nanobind::module_& m);
 void bind_online(nanobind::module_& m);
 

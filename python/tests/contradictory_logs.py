@@ -11,7 +11,6 @@ from sample_logs import Drive, simulated_log
 
 from slipwise import _core
 from slipwise.logs import Inputs, Log, Poses, Run
-from slipwise.logs.dead_reckoning import dead_reckoned
 
 #: A robot that turns 60 % of what its wheels say and answers commands late: real, and no contradiction.
 SKID_STEERED = Drive(
@@ -65,6 +64,17 @@ def circular(log: Log) -> Log:
         return replace(run, poses=dead_reckoned(run.wheels))
 
     return with_runs(log, change)
+
+
+def dead_reckoned(wheels: Inputs) -> Poses:
+    """Integrate wheel speeds, held between their stamps, to poses at these stamps."""
+    plain = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
+    history = _core.InputHistory(wheels.t, wheels.v, wheels.vy, wheels.omega)
+    origin = _core.Pose2(0.0, 0.0, 0.0)
+    whole = _core.Segment(float(wheels.t[0]), float(wheels.t[-1]), origin, None, 0.0, 0.0)
+    path = _core.integrate_segment(plain, np.zeros(0), history, whole, _core.Integrator.Exact)
+    x, y, yaw = np.ascontiguousarray(path.poses.T)
+    return Poses(t=wheels.t, x=x, y=y, yaw=yaw, frame=np.zeros(len(wheels), dtype=np.int64))
 
 
 def with_poses(log: Log, change: Callable[[Poses], Poses]) -> Log:

@@ -65,6 +65,15 @@ void SegmentStream::set_turn(Segment& segment) const {
   segment.source = SegmentSource{.heading_only = true};
 }
 
+void SegmentStream::reject_gated(const GatedPoses& gated) {
+  for (const MeasuredPose& pose : gated.outliers) {
+    reject(Stream::Pose, Reason::PoseOutlier, pose.t);
+  }
+  for (const MeasuredPose& pose : gated.jumps) {
+    reject(Stream::Pose, Reason::PoseJump, pose.t);
+  }
+}
+
 void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
   for (const SegmentCut& cut : cuts) {
     if (!cut.rejected) {

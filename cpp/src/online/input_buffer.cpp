@@ -137,6 +137,21 @@ InputBuffer::Driven InputBuffer::driven(double start, double end) const {
   return sum;
 }
 
+HeldMotion InputBuffer::held_motion(double start, double end) const {
+  HeldMotion sum{0.0, 0.0, 0.0, 0.0};
+  for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1; i < samples_.size() && samples_[i].t < end;
+       ++i) {
+    const double next = i + 1 < samples_.size() ? samples_[i + 1].t : end;
+    const double until = std::min({next, samples_[i].t + unknown_after_, end});
+    const double seconds = std::max(until - std::max(samples_[i].t, start), 0.0);
+    sum.forward += seconds * samples_[i].twist.v;
+    sum.sideways += seconds * samples_[i].twist.vy;
+    sum.rotation += seconds * samples_[i].twist.omega;
+    sum.known += seconds;
+  }
+  return sum;
+}
+
 Pose2 InputBuffer::reckoned(double start, double end) const {
   Pose2 pose;
   for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1; i < samples_.size() && samples_[i].t < end;

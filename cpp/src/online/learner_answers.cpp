@@ -132,7 +132,8 @@ LearnedModel MotionLearner::model() const {
                        .seconds = complete.seconds_,
                        .segments = complete.hypotheses_.count(),
                        .rejected = complete.rejected_,
-                       .car = complete.stream_.car_curves()};
+                       .car = complete.stream_.car_curves(),
+                       .evidence = complete.stream_.evidence()};
   learned.known.until = clock_.stamp(learned.known.until);
   const double spacing = complete.stream_.wheel_interval();
   learned.known.motion = supported(learned.known.motion, spacing, learned.segments);

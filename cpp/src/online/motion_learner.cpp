@@ -107,6 +107,7 @@ double MotionLearner::counted(double stamp) {
   const bool set_again = later(before_run_, clock_.counted(stamp));
   if (first || set_again) {
     clock_.start_at(stamp);
+    stream_.count_from(clock_.stamp(0.0));
   }
   if (set_again) {
     for (Knowledge& known : known_) {

@@ -121,6 +121,18 @@ CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> 
   return cut;
 }
 
+MotionEvidence motion_evidence(const StreamSettings& settings, std::span<const Recording> runs) {
+  SegmentStream stream(settings);
+  for (const Recording& run : runs) {
+    stream.start_run();
+    merge(run, ToStream{stream});
+    stream.end_run();
+    stream.take_items();
+    stream.take_rejected();
+  }
+  return stream.evidence();
+}
+
 std::vector<std::vector<InputSample>> expected_commands(const StreamSettings& settings,
                                                         std::span<const Recording> runs) {
   SegmentStream stream(settings);

@@ -62,6 +62,7 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
 
 void SegmentStream::start_run() {
   end_run();
+  evidence_.start_run();
   newest_ = now_ = -kNever;
   stamps_.fill({});
   speeds_ = {};
@@ -86,10 +87,12 @@ void SegmentStream::end_run() {
   finish_cutters();
   rates_.restart();
   held_.restart();
+  evidence_.end_run(wheels_);
 }
 
 /// Whether a measurement may be used; says why not.
 bool SegmentStream::arrives(Stream stream, double t, std::span<const double> numbers) {
+  evidence_.see_stamp(t);
   const bool too_late = std::isfinite(t) && later(newest_ - settings_.latency, t);
   if (const auto wrong = stamps_[index(stream)].check(t, numbers)) {
     reject(stream, *wrong, t);
@@ -164,6 +167,7 @@ std::optional<Tilt> SegmentStream::push_attitude(const Tilt& measured) {
 void SegmentStream::push_gyro(const YawRate& sample) {
   if (arrives(Stream::Gyro, sample.t, std::array{sample.rate})) {
     gyro_.push(sample);
+    evidence_.push_gyro(sample);
     if (settings_.heading_only) {
       turn_on(sample);
     }
@@ -172,6 +176,7 @@ void SegmentStream::push_gyro(const YawRate& sample) {
 }
 
 bool SegmentStream::push_pose(const MeasuredPose& pose, bool learned) {
+  evidence_.see_stamp(pose.t);
   if (pose.fix == PoseFix::None) {
     reject(Stream::Pose, Reason::NoFix, pose.t);
     return false;
@@ -210,6 +215,7 @@ void SegmentStream::advance(double until) {
   }
   advance_others(until);
   process_wheels(until);
+  evidence_.compare_gyro(until, commands_, wheels_);
   trim();
 }
 
@@ -232,6 +238,7 @@ void SegmentStream::process_pose(const MeasuredPose& raw) {
   if (settings_.heading_only) {
     process_accepted({.accepted = {pose}, .outliers = {}, .jumps = {}});
   } else {
+    evidence_.see_measured(raw, commands_, wheels_);
     process_accepted(gate_.push(pose, gate_inputs(now_)));
   }
 }
@@ -252,17 +259,11 @@ const InputBuffer& SegmentStream::gate_inputs(double t) const {
   return !wheels_.empty() && !later(wheels_.first(), t) ? wheels_ : commands_;
 }
 
-void SegmentStream::reject_gated(const GatedPoses& gated) {
-  for (const MeasuredPose& pose : gated.outliers) {
-    reject(Stream::Pose, Reason::PoseOutlier, pose.t);
-  }
-  for (const MeasuredPose& pose : gated.jumps) {
-    reject(Stream::Pose, Reason::PoseJump, pose.t);
-  }
-}
-
 void SegmentStream::process_accepted(const GatedPoses& gated) {
   reject_gated(gated);
+  if (!settings_.heading_only) {
+    evidence_.see_gated(gated, commands_, wheels_);
+  }
   for (const MeasuredPose& pose : gated.accepted) {
     auto timed = timer_.push(pose, settings_.rules.late_factor);
     if (!timed) {

@@ -35,9 +35,10 @@ from slipwise.calibration.verdict import LogFacts
 from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.logs.contradiction import Contradiction
-from slipwise.logs.contradictions import contradictions
+from slipwise.logs.contradictions import Seen, contradictions_in, contradictions_of_log
 from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Log, has_course
+from slipwise.logs.motion_windows import evidence_of
 from slipwise.models import schema
 from slipwise.models.model import Model
 
@@ -93,8 +94,8 @@ def calibrate_by(
     """
     windows = learning_windows(prepare_run(log, input_name), input_name, settings)
     refuse_empty(windows, log)
-    found = found_contradictions(log, input_name, settings)
     learned = learn(windows)
+    found = found_contradictions(learned, windows.drive, (log, input_name, settings))
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     return Calibration(
         model_of(content, log, found),
@@ -114,15 +115,29 @@ def model_of_log(learned: Learned, log: Log, input_name: str, settings: Settings
         LogError: no model holds what was learned.
     """
     windows = learning_windows(prepare_run(log, input_name), input_name, settings)
-    found = found_contradictions(log, input_name, settings)
+    found = found_contradictions(learned, windows.drive, (log, input_name, settings))
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     return model_of(content, log, found), judged.judgement
 
 
-def found_contradictions(log: Log, input_name: str, settings: Settings) -> tuple[Contradiction, ...]:
-    """Return where poses and inputs contradict each other."""
-    yaw = settings.sensor_extrinsics.yaw
-    return contradictions(log, input_name, settings.segment.unknown_after, sensor_yaw=yaw)
+def found_contradictions(
+    learned: Learned, drive: tuple[PreparedRun, ...], given: tuple[Log, str, Settings]
+) -> tuple[Contradiction, ...]:
+    """Return where poses and inputs contradict each other in what was learned."""
+    log, input_name, settings = given
+    evidence = learned.evidence
+    if evidence is None:
+        evidence = evidence_of([run.run for run in drive], settings.segment.unknown_after)
+    seen = Seen(
+        evidence=evidence,
+        runs=[run.run.name for run in drive],
+        input_name=input_name,
+        positions=has_course(log.runs),
+        gyro=has_course(log.runs) or gyro_alone(log.runs),
+        sensor_yaw=settings.sensor_extrinsics.yaw,
+    )
+    unknown_after = settings.segment.unknown_after
+    return (*contradictions_in(seen), *contradictions_of_log(log, input_name, unknown_after))
 
 
 def judged_content(
@@ -176,6 +191,7 @@ def learned_by(learned: LearnedLog) -> Learned:
         learned.car,
         learned.sources,
         learned.body,
+        learned.evidence,
     )
 
 

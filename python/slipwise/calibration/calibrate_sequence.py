@@ -80,7 +80,7 @@ def calibrate_sequence(
     )
     assert sequence.learned is not None  # it was asked to be kept
     learned = learned_by(sequence.learned)
-    found = found_contradictions(log, input_name, settings)
+    found = found_contradictions(learned, windows.drive, (log, input_name, settings))
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     kept = learned.kept.structure, learned.kept.motion
     model = model_of(with_memory(content, sequence.learner, kept, start), log, found)

@@ -30,6 +30,7 @@ class Learned:
     car: _core.CarCurves | None = None  # where commands are throttle and steering
     sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
     body: schema.MeasuredBody | None = None  # what the poses show of its rates
+    evidence: _core.MotionEvidence | None = None  # of contradictions, where a learner took the measurements
 
     @property
     def judged(self) -> int:

@@ -46,6 +46,7 @@ class LearnedLog:
     car: _core.CarCurves | None = None  # where commands are throttle and steering
     sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
     body: MeasuredBody | None = None  # what the poses show of its rates
+    evidence: _core.MotionEvidence | None = None  # of contradictions
 
 
 @dataclass(frozen=True)
@@ -167,6 +168,7 @@ def learned_of(
         car=model.car,
         sources=learned_sources(learner, source_names(run.run for run in drive)),
         body=measured_body(model),
+        evidence=model.evidence,
     )
 
 

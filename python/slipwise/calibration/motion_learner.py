@@ -31,6 +31,8 @@ from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts
 from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import SettingsError
+from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.contradictions import Seen, contradictions_in, contradictions_of_log, not_shown_yet
 from slipwise.logs.log import Log
 from slipwise.models import Model, parse_model
 from slipwise.models.schema import ModelFile, Range
@@ -101,6 +103,8 @@ class MotionLearner(Measurements, RememberedSurfaces):
         self._wheel_step = WheelStep()
         self._remember = remember
         self._start: Model | None = None  # that it began with
+        self._of_log: tuple[Contradiction, ...] = ()  # what only a whole log shows
+        self._clocks_compared = False
 
     def start_run(self, name: str) -> None:
         """Begin a run: nothing is joined across runs; what was learned stays."""
@@ -243,7 +247,9 @@ class MotionLearner(Measurements, RememberedSurfaces):
             made, judgement = model_of_log(learned, log, self._input, self._settings)
             return model_of(self._remembered(made.content, learned), log, ()), judgement
         sensors = Sensors(self._wheels, "", self._gyro_alone)
-        facts = LogFacts((), (), self._input, self._positions, clocks_compared=False)
+        found = contradictions_in(self._seen(model.evidence))
+        found = contradictions_in(self._seen(model.evidence))
+        facts = LogFacts((*found, *self._of_log), (), self._input, self._positions, self._clocks_compared)
         judged = judge(to_judge(learned, self._settings, sensors, positions=self._positions), facts)
         slowest, fastest, right, left = model.range
         origin = ModelFacts(
@@ -260,7 +266,31 @@ class MotionLearner(Measurements, RememberedSurfaces):
             segments=model.segments,
         )
         content = self._remembered(model_content(learned, judged, origin), learned)
-        return model_of(content, Log(()), ()), judged.judgement
+        return model_of(content, Log(()), found), judged.judgement
+
+    def know_log(self, log: Log) -> None:
+        """Take what a whole log shows beside the measurements that are pushed from it."""
+        unknown_after = self._settings.segment.unknown_after
+        self._of_log = contradictions_of_log(log, self._input, unknown_after)
+        self._clocks_compared = log.clocks_compared
+
+    def contradictions(self) -> tuple[Contradiction, ...]:
+        """Return what shows that poses and inputs cannot both be right, of all that was pushed."""
+        return contradictions_in(self._seen(self._core.model().evidence))
+
+    def not_shown_yet(self) -> str:
+        """Say what is missing until contradictions would have shown themselves; empty where nothing is."""
+        return not_shown_yet(self._seen(self._core.model().evidence))
+
+    def _seen(self, evidence: _core.MotionEvidence) -> Seen:
+        return Seen(
+            evidence=evidence,
+            runs=self._runs,
+            input_name=self._input,
+            positions=self._positions,
+            gyro=self._positions or self._gyro_alone,
+            sensor_yaw=self._settings.sensor_extrinsics.yaw,
+        )
 
     def _remembered(self, content: ModelFile, learned: Learned) -> ModelFile:
         """Return the content with the surfaces, where these are remembered."""
@@ -285,6 +315,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             model.car,
             self.sources,
             measured_body(model),
+            model.evidence,
         )
 
     def save(self) -> bytes:

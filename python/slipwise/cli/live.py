@@ -158,6 +158,8 @@ def live(
             run=robot.run,
             command_timeout=timeout,
         )
+        if robot.log is not None:
+            built.learning.learner.know_log(robot.log)
         stopping.node = built.node
         if duration is not None:
             timer = threading.Timer(duration, built.node.stop)

@@ -11,7 +11,7 @@ import numpy as np
 from slipwise.calibration.live_table import ApplyTable
 from slipwise.live.outputs import Floats, Validity
 from slipwise.models import Model
-from slipwise.models.schema import Parameter
+from slipwise.models.schema import Parameter, Slip, VerdictSection
 from slipwise.number_text import estimate_texts, number_text
 
 LONGEST_STEP = 5.0  # s that one step counts; judgements are no farther apart while the robot drives
@@ -63,6 +63,13 @@ class AppliedModel:
         """Take what was learned at once, clipped all the same: somebody asked for it."""
         for name, wanted, _ in self._wanted(model, validity):
             self.values[name] = wanted
+
+    def withdraw(self) -> bool:
+        """Go back to the start at once; return whether others had been told anything else."""
+        told = math.isfinite(self._last)
+        self.values, self._handed, self._last = dict(self.start), {}, -math.inf
+        self.held.clear()
+        return told
 
     def due(self, t: float, model: Model) -> bool:
         """Say whether others should be told at `t` [s]: the interval is over, and something moved enough."""
@@ -132,6 +139,31 @@ def values_of(model: Model | None) -> dict[str, float]:
 def start_value(p: Parameter) -> float:
     """Return where a parameter begins that the start does not have, when it is seen first."""
     return p.value if p.name.startswith("log_") else 0.0
+
+
+def without_slip(model: Model, why: str) -> Model:
+    """Return the kinematic baseline of a robot as a model that is not good, since another was withdrawn.
+
+    Args:
+        model: that was withdrawn.
+        why: a sentence.
+    """
+    nothing = {"dynamics": False, "delays": False, "clock_offset": False, "response": False}
+    verdict = VerdictSection(good=False, sentence=f"No slip: what was learned was withdrawn. {why}")
+    changed: dict[str, object] = {
+        **nothing,
+        "sensor_extrinsics": False,
+        "slip": Slip(basis="none", lon=[], lat=[], ang=[]),
+        "parameters": [],
+        "covariance": [],
+        "limits": None,
+        "body_force": None,
+        "slip_disturbance": None,
+        "weights": {},
+        "surfaces": [],
+        "verdict": verdict,
+    }
+    return Model(model.content.model_copy(update=changed))
 
 
 def physical(name: str, values: Mapping[str, float]) -> float | None:

@@ -90,6 +90,9 @@ class Cache:
             raise SettingsError(f"it cannot be judged: {problem}", where=str(self.state)) from problem
         if valid is not None:
             write_text_whole(self.model, valid.to_yaml())
+        else:  # it was withdrawn, or there was none
+            with output_errors(self.model):
+                self.model.unlink(missing_ok=True)
         head = json.dumps({"key": asdict(self._key), "valid": valid is not None}).encode()
         body = _core.sealed(len(head).to_bytes(_LENGTH_BYTES, "little") + head + saved)
         write_whole(self.state, lambda place: _write(place, body))

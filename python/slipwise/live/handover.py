@@ -34,34 +34,56 @@ class Handover:
     def __init__(self, rules: ApplyTable, said: Said) -> None:
         self._rules, self._said = rules, said
         self._reached: set[str] = set()  # targets that got something
+        self._told: set[tuple[str, str]] = set()  # targets and names of what nodes were told
         self._options = ExportOptions(
             ros_distro=rules.ros_distro or os.environ.get("ROS_DISTRO") or None,
             update_rate=rules.update_rate,
             planning_horizon=rules.planning_horizon,
         )
 
-    def hand_on(self, t: float, model: Model) -> list[AppliedParameters]:
-        """Write the files; return what running nodes are to be told."""
+    def withdraw(self, t: float, model: Model, why: str) -> list[AppliedParameters]:
+        """Write the start values into the files again, with a word why; return what nodes are to be told.
+
+        Args:
+            t: now, a stamp [s].
+            model: with the start values.
+            why: what was handed on must not be used.
+        """
+        reason = " ".join(why.split())
+        mark = f"# Withdrawn at stamp {t:.3f} s, these are the start values again: {reason}\n"
+        again = self.hand_on(t, model, mark=mark)
+        names = {(each.target, name) for each in again for name in each.values}
+        left = sorted(f"{name} of {target}" for target, name in self._told - names)
+        if left:
+            self._said.note(t, f"the start has no {', '.join(left)}: restart the nodes that were told")
+        self._told = names
+        return again
+
+    def hand_on(self, t: float, model: Model, *, mark: str = "") -> list[AppliedParameters]:
+        """Write the files, each with a `mark` on top; return what running nodes are to be told."""
         if self._rules.folder is None and not (self._rules.set_parameters and self._rules.targets):
             self._said.begins(t, "nowhere", "nothing is handed on: [live.apply] names no folder to write to")
             return []
-        written = [_MODEL] if self._write(t, _MODEL, model.to_yaml()) else []
+        written = [_MODEL] if self._write(t, _MODEL, mark + model.to_yaml()) else []
         told = []
         for target in self._rules.targets:
             try:
                 made = export_model(model, target, name="the live model", options=self._options)
             except SlipwiseError as problem:
                 self._said.begins(t, f"export {target}", f"{target} gets nothing: {problem}")
+                if mark:  # what is there must not be used
+                    self._write(t, find_target(target).file_name, mark)
                 continue
             self._said.ends(t, f"export {target}")
             name = find_target(target).file_name
-            if self._write(t, name, made.text):
+            if self._write(t, name, mark + made.text):
                 written.append(name)
                 self._reached.add(target)
             if self._rules.set_parameters:
                 told += self._to_tell(t, target, made.values)
         if written:
-            self._said.note(t, f"written to {self._rules.folder}: {', '.join(written)}")
+            what = "start values written to" if mark else "written to"
+            self._said.note(t, f"{what} {self._rules.folder}: {', '.join(written)}")
         return told
 
     def finish(self, t: float) -> None:
@@ -88,6 +110,7 @@ class Handover:
         if not at_once:
             return []
         self._reached.add(target)
+        self._told |= {(target, name) for name in at_once}
         return [AppliedParameters(t, target, node, dict(at_once), file)]
 
     def _path(self, name: str) -> str:

@@ -42,6 +42,8 @@ class Learning:
         self._new = False  # whether something was learned since the last judgement
         self._judged = -math.inf  # s
         self._changed = -math.inf  # s
+        self._shown = False  # whether contradictions would have shown themselves by now
+        self.contradicted = ""  # why what was learned must not be used; empty where nothing speaks against it
 
     def take(self, events: list[Event]) -> bool:
         """Take what the learner had to say; return whether something was learned."""
@@ -56,12 +58,18 @@ class Learning:
                 self._said.note(event.t, "the terrain changed: slip is learned faster for a while")
         return learned
 
-    def judge(self, t: float) -> bool:
-        """Judge what is known where it is time to, at a stamp [s]; return whether it was."""
+    def judge(self, t: float, *, last: bool = False) -> bool:
+        """Judge what is known where it is time to, at a stamp [s]; return whether it was.
+
+        Args:
+            t: now.
+            last: nothing more comes: it is judged whatever the time since the last judgement.
+        """
         seldom = self.segments > MANY and t > self._changed + AFTER_CHANGE
         if t < self._judged:  # the clock was set back
             self._judged = -math.inf
-        if not self._new or t < self._judged + (SELDOM if seldom else OFTEN):
+        due = self._new and t >= self._judged + (SELDOM if seldom else OFTEN)
+        if not (due or (last and self.segments)):
             return False
         self._new, self._judged = False, t
         before = self.validity.whole
@@ -69,16 +77,34 @@ class Learning:
             self.model, self.judgement = self.learner.judged_model(limits=False)
         except SlipwiseError as problem:
             self._said.begins(t, "no model", str(problem))
-            return False
-        self._said.ends(t, "no model")
-        for p in self.model.content.parameters:
-            self.start_values.setdefault(p.name, start_value(p))
-        self.validity.take(self.model, self.judgement)
+            found = [each.sentence for each in self.learner.contradictions() if each.spoils] or [str(problem)]
+            self.validity.contradicted("; ".join(found))
+        else:
+            self._said.ends(t, "no model")
+            for p in self.model.content.parameters:
+                self.start_values.setdefault(p.name, start_value(p))
+            waits = "" if self._shown else self.learner.not_shown_yet()
+            self._shown = not waits
+            found = self.model.content.verdict.contradictions
+            self.validity.take(self.model, self.judgement, waits)
+        self._follow(t, "; ".join(found), before)
+        return True
+
+    def _follow(self, t: float, contradicted: str, before: Validity) -> None:
+        """Keep what is valid; what was valid before a contradiction was learned of the same measurements."""
+        if contradicted:
+            self.valid = None
+        if contradicted and not self.contradicted:
+            self._said.begins(t, "contradiction", f"nothing that was learned is used: {contradicted}")
+        elif self.contradicted and not contradicted:
+            self._said.ends(t, "contradiction", "poses and inputs contradict each other no longer")
+        self.contradicted = contradicted
+        if self.model is None:
+            return
         if self.validity.whole == "estimated" and self.model.content.verdict.good:
             self.valid = self.model
-        if self.validity.whole != before:
+        if self.validity.whole != before and not contradicted:
             self._said.note(t, f"the model is {self.validity.whole}: {self.validity.why}")
-        return True
 
     @property
     def valid_now(self) -> Model | None:

@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from slipwise.errors import SlipwiseError
-from slipwise.live.applied import AppliedModel
+from slipwise.live.applied import AppliedModel, without_slip
 from slipwise.live.cache import Cache
 from slipwise.live.gates import Gates
 from slipwise.live.handover import Handover
@@ -76,6 +76,7 @@ class LiveNode:
         self._next = dict.fromkeys(("status", "notices", "save"), 0.0)  # s of the wall clock
         self._given: tuple[Model, str] | None = None  # the model that others have, and which it is
         self._unsaved: SlipwiseError | None = None  # why the state was not saved the last time
+        self._handed: Model | None = None  # what files and nodes were given
 
     def stop(self) -> None:
         """End the loop; may be called from any thread, or a signal."""
@@ -167,12 +168,16 @@ class LiveNode:
             self._driven.take(sample.x, sample.y, sample.yaw)
             if parts.learning.take(parts.intake.events()):
                 self._publish_surface(t)
-            if parts.learning.judge(t):
-                self._publish_model(t)
-                self._parameters = parameters_now(parts.learning, parts.applied)
+            self._judge(t)
             self._watch_motion(t)
         if not isinstance(sample, Override):
             self._publish_odometry(t)
+
+    def _judge(self, t: float, *, last: bool = False) -> None:
+        parts = self._parts
+        if parts.learning.judge(t, last=last):
+            self._publish_model(t)
+            self._parameters = parameters_now(parts.learning, parts.applied)
 
     def _publish_odometry(self, t: float) -> None:
         """Whenever something newer is known, at a bounded rate."""
@@ -204,11 +209,15 @@ class LiveNode:
         parts = self._parts
         model, which = parts.learning.given()
         if parts.applied is not None:
-            valid = parts.learning.valid_now
+            valid = None if self._stuck else parts.learning.valid_now
+            if parts.learning.contradicted:
+                self._withdraw(t, parts.learning.contradicted)
             parts.applied.step(t, valid, parts.learning.validity.of)
             self._say_held(t, parts.applied)
             if parts.who.apply == "auto" and valid is not None and parts.applied.due(t, valid):
                 self._hand_on(t)
+        if model is None and self._given is not None:  # it was withdrawn, and there is no start model
+            model = self._given[0] if self._given[1] == which else without_slip(self._given[0], which)
         if model is None or (model, which) == self._given:
             return
         self._given = (model, which)
@@ -225,12 +234,24 @@ class LiveNode:
             else:
                 said.begins(t, f"held {name}", why)
 
+    def _withdraw(self, t: float, why: str) -> None:
+        """Take back what was handed on, where something was."""
+        parts, handed = self._parts, self._handed
+        self._handed = None
+        if parts.applied is None or not parts.applied.withdraw() or parts.handover is None or handed is None:
+            return
+        start = parts.learning.start or without_slip(handed, why)
+        for output in parts.handover.withdraw(t, start, why):
+            self._publish(output)
+        parts.said.note(t, f"the parameters that were handed on are withdrawn: {why}")
+
     def _hand_on(self, t: float) -> None:
         parts = self._parts
         valid = parts.learning.valid
         if parts.applied is None or parts.handover is None or valid is None:
             return
-        for output in parts.handover.hand_on(t, parts.applied.model(valid)):
+        self._handed = parts.applied.model(valid)
+        for output in parts.handover.hand_on(t, self._handed):
             self._publish(output)
         parts.applied.handed_on(t)
 
@@ -257,7 +278,8 @@ class LiveNode:
         if parts.applied is None:
             parts.said.note(t, "nothing is handed on: the node runs with --apply off")
         elif valid is None:
-            parts.said.note(t, f"nothing is handed on: the model is {parts.learning.validity.whole}")
+            validity = parts.learning.validity
+            parts.said.note(t, f"nothing is handed on: the model is {validity.whole}: {validity.why}")
         else:
             parts.applied.jump(valid, parts.learning.validity.of)
             self._hand_on(t)
@@ -329,6 +351,7 @@ class LiveNode:
         parts = self._parts
         t = parts.intake.newest
         self._survive("the last segment", lambda: parts.learning.take(parts.intake.events()))
+        self._survive("the last judgement", lambda: self._judge(t, last=True))
         self._survive("the search for moves", lambda: self._look_for_moves(whole=True))
         if parts.handover is not None:
             self._survive("the handover", partial(parts.handover.finish, t))

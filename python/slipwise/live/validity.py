@@ -29,6 +29,10 @@ class Hysteresis:
             self.state, self._agreed = judged, 0
         return self.state
 
+    def set(self, state: Validity) -> None:
+        """Change the state at once."""
+        self.state, self._agreed = state, 0
+
     def doubt(self) -> None:
         """Take back what speaks for another state: the terrain changed, and judgements begin again."""
         self._agreed = 0
@@ -41,6 +45,10 @@ def judged(model: Model, judgement: Judgement) -> tuple[Validity, str]:
         return "estimated", verdict.sentence
     unknown = judgement.too_short or not (judgement.worse or _untrue(judgement))
     return ("unestimated" if unknown and not verdict.contradictions else "invalid"), verdict.sentence
+
+
+def _not_shown(waits: str) -> str:
+    return f"what poses and inputs say is compared first: {waits}"
 
 
 def _untrue(judgement: Judgement) -> bool:
@@ -60,15 +68,32 @@ class ModelValidity:
         """Of the model as a whole."""
         return self._whole.state
 
-    def take(self, model: Model, judgement: Judgement) -> None:
-        """Take a model with its judgement."""
+    def take(self, model: Model, judgement: Judgement, waits: str = "") -> None:
+        """Take a model with its judgement.
+
+        Args:
+            model: what was learned.
+            judgement: of its predictions.
+            waits: what is missing until a contradiction would have shown itself: nothing is valid before.
+        """
         now, self.why = judged(model, judgement)
+        if model.content.verdict.contradictions:
+            self.contradicted(self.why)
+            return
+        if waits and now == "estimated":
+            now, self.why = "unestimated", _not_shown(waits)
         self._whole.take(now)
         for parameter in model.content.parameters:
             each: Validity = "unestimated"
-            if parameter.identifiable:
+            if parameter.identifiable and not waits:
                 each = "invalid" if now == "invalid" else "estimated"
             self._parameters.setdefault(parameter.name, Hysteresis()).take(each)
+
+    def contradicted(self, why: str) -> None:
+        """Poses and inputs contradict each other: nothing is valid, at once."""
+        self.why = why
+        for each in (self._whole, *self._parameters.values()):
+            each.set("invalid")
 
     def of(self, name: str) -> Validity:
         """Return the validity of a parameter by its name in the model file."""

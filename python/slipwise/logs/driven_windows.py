@@ -21,7 +21,7 @@ _MOVED = 0.01  # [m] poses that moved less have no course
 class DrivenWindows:
     """Poses against inputs in N windows, in order of time within each run."""
 
-    run: Floats  # [N] number of the pair of inputs and poses
+    run: Floats  # [N] number of the run
     start: Floats  # [N] s
     forward: Floats  # [N] m, by the inputs
     scale: Floats  # [N] distance of the poses over that of the inputs

@@ -3,21 +3,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from slipwise import _core
 from slipwise.logs.contradiction import Contradiction
-from slipwise.logs.held import UNKNOWN_AFTER, HeldSum
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Floats, Run
+from slipwise.logs.motion_windows import run_name
 from slipwise.logs.streams import RawStream
 
 _COLUMN = "gyro_z"  # rad/s, counter-clockwise
-_WINDOW = 1.0  # [s] over which turns are compared
-_ENOUGH = 15  # windows in which the inputs turn; with fewer nothing is said
-_TURNING = 0.1  # [rad/s] of the inputs
+_ENOUGH = 15  # seconds in which the inputs turn; with fewer nothing is said
 _LEAST, _MOST = 0.05, 5.0  # turns of the gyro over those of the inputs
 _NONE = np.empty((0, 2))
 
@@ -50,14 +49,30 @@ def with_gyro(runs: tuple[Run, ...], stream: RawStream, starts: Floats) -> tuple
     return tuple(found)
 
 
-def gyro_contradictions(runs: tuple[Run, ...]) -> tuple[Contradiction, ...]:
+def gyro_contradiction(turns: Floats, runs: Sequence[str]) -> Contradiction | None:
+    """Say whether a gyro that is learned from does not turn as the inputs do.
+
+    Args:
+        turns: sums of each run, of `_core.MotionEvidence`.
+        runs: their names.
+    """
+    odd = [run_name(runs, row[0]) for row in turns if _otherwise(row)]
+    return _said("the gyro does not turn as the inputs do", odd[0], spoils=True) if odd else None
+
+
+def left_out_gyros(runs: tuple[Run, ...]) -> tuple[Contradiction, ...]:
     """Say which gyro is not used since it does not turn as the inputs do."""
     odd = [run.name for run in runs if _turns_otherwise(run, _measured(run))]
-    if not odd:
-        return ()
-    sentence = f"the gyro does not turn as the inputs do and is left out (run {odd[0]})"
+    return (
+        (_said("the gyro does not turn as the inputs do and is left out", odd[0], spoils=False),)
+        if odd
+        else ()
+    )
+
+
+def _said(what: str, run: str, *, spoils: bool) -> Contradiction:
     advice = f"Give {_COLUMN} in rad/s, positive counter-clockwise seen from above."
-    return (Contradiction("gyro-turns-otherwise", sentence, (advice,), spoils=False),)
+    return Contradiction("gyro-turns-otherwise", f"{what} (run {run})", (advice,), spoils=spoils)
 
 
 def _measured(run: Run) -> Floats:
@@ -73,16 +88,19 @@ def _measured(run: Run) -> Floats:
 
 
 def _turns_otherwise(run: Run, rows: Floats) -> bool:
-    inputs = run.wheels if run.wheels is not None else run.commands
-    if inputs is None or len(rows) < 2:
+    if len(rows) < 2:
         return False
-    start = np.arange(rows[0, 0], rows[-1, 0] - _WINDOW - _core.SAME_STAMP, _WINDOW)
-    turned = HeldSum.of(inputs, inputs.omega, UNKNOWN_AFTER)
-    by_inputs, known = turned.between(start, start + _WINDOW), turned.known(start, start + _WINDOW)
-    steps = np.concatenate(([0.0], np.cumsum(0.5 * np.diff(rows[:, 0]) * (rows[1:, 1] + rows[:-1, 1]))))
-    by_gyro = np.interp(start + _WINDOW, rows[:, 0], steps) - np.interp(start, rows[:, 0], steps)
-    turning = (np.abs(by_inputs) > _TURNING * _WINDOW) & (known > 0.9 * _WINDOW + _core.SAME_STAMP)
-    if turning.sum() < _ENOUGH:
-        return False
-    ratio = float(by_inputs[turning] @ by_gyro[turning] / (by_inputs[turning] @ by_inputs[turning]))
-    return not _LEAST < ratio < _MOST
+    settings, none = _core.StreamSettings(), np.empty((0, 4))
+    settings.unknown_after, settings.horizons = UNKNOWN_AFTER, []
+    commands, wheels = (
+        none if given is None else np.column_stack((given.t, given.v, given.vy, given.omega))
+        for given in (run.commands, run.wheels)
+    )
+    recording = _core.Recording(commands, wheels, np.empty((0, 3)), np.empty((0, 7)), rows)
+    return any(_otherwise(row) for row in _core.motion_evidence(settings, [recording]).gyro_turns)
+
+
+def _otherwise(turns: Floats) -> bool:
+    """Say it of one run: number of seconds, then the sums of products and squares, follow its number."""
+    _, seconds, product, square = turns
+    return bool(seconds >= _ENOUGH and not _LEAST < product / square < _MOST)

@@ -1,28 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Short windows in which what the poses did can be compared with what the inputs said."""
+"""Short windows in which what the poses did can be compared with what the inputs said, cut by the core."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from slipwise import _core
-from slipwise.logs.held import HeldSum
-from slipwise.logs.log import Floats, Inputs, Poses
+from slipwise.logs.log import Floats, Inputs, Run
 
-_LENGTH = 1.5  # [s]
-_LONGEST = 4.0  # [s] poses may be missing for a while
 _KNOWN_PART = 0.9  # of a window's time, inputs must be known
+_POSES = 9  # columns of the core's rows that tell of poses; 4 of the commands and 4 of the wheels follow
 
 
 @dataclass(frozen=True, eq=False)
 class MotionWindows:
-    """Poses against inputs in N windows."""
+    """Poses against inputs in N windows of about 1.5 s, each inside one frame and with known inputs."""
 
-    run: Floats  # [N] number of the pair of inputs and poses
+    run: Floats  # [N] number of the run
     start: Floats  # [N] s, stamp of the first pose
+    since: Floats  # [N] s from the first pose of the run to that
     duration: Floats  # [N] s
     distance: Floats  # [N] m, between the first and the last pose
     course: Floats  # [N] rad, direction of that line
@@ -37,52 +36,67 @@ class MotionWindows:
         return len(self.duration)
 
 
-def motion_windows(pairs: Sequence[tuple[Inputs, Poses]], unknown_after: float) -> MotionWindows:
-    """Cut all runs into windows of about 1.5 s inside one frame and with known inputs.
+def motion_windows(rows: Floats, input_name: str) -> MotionWindows:
+    """Return the windows in which one kind of input is known.
+
+    Args:
+        rows: of `_core.MotionEvidence`.
+        input_name: "command" or "wheel".
+    """
+    first = _POSES if input_name == "command" else _POSES + 4
+    poses, (*held, known) = rows[:, :_POSES].T, rows[:, first : first + 4].T
+    good = known > _KNOWN_PART * rows[:, 3] + _core.SAME_STAMP
+    return MotionWindows(*(column[good] for column in (*poses, *held)))
+
+
+def run_name(runs: Sequence[str], number: float) -> str:
+    """Return the name of a run by its number; one that nobody named has none."""
+    return runs[int(number)] if number < len(runs) else ""
+
+
+def evidence_of(runs: Iterable[Run], unknown_after: float) -> _core.MotionEvidence:
+    """Return what a learner would know of contradictions after these runs, which learns nothing itself.
 
     An input is unknown once it is older than `unknown_after` [s].
     """
-    parts = [
-        _windows(k, inputs, poses, unknown_after) for k, (inputs, poses) in enumerate(pairs) if len(poses) > 1
-    ]
-    names = [column.name for column in fields(MotionWindows)]
-    columns = {
-        name: np.concatenate([np.empty(0), *(getattr(part, name) for part in parts)]) for name in names
-    }
-    return MotionWindows(**columns)
+    settings = _core.StreamSettings()
+    settings.unknown_after, settings.horizons = unknown_after, []
+    return _core.motion_evidence(settings, [_recording(run) for run in runs])
+
+
+def measured_rows(runs: Iterable[Run], unknown_after: float) -> Floats:
+    """Return rows of windows of poses as they were measured, whatever the unit of the inputs may be.
+
+    The gates of a learner leave speeds out that no robot has: they are shown a thousandth.
+    """
+    slow = 1e-3
+    rows = evidence_of([_slower(run, slow) for run in runs], unknown_after).measured_windows
+    for first in (_POSES, _POSES + 4):
+        rows[:, first : first + 3] /= slow
+    return rows
+
+
+def _slower(run: Run, factor: float) -> Run:
+    commands, wheels = (
+        None if i is None else replace(i, v=factor * i.v, vy=factor * i.vy, omega=factor * i.omega)
+        for i in (run.commands, run.wheels)
+    )
+    return replace(run, commands=commands, wheels=wheels)
+
+
+def _recording(run: Run) -> _core.Recording:
+    poses = run.poses if run.poses.measured is None else run.poses.measured
+    yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
+    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame.astype(np.float64)))
+    return _core.Recording(_rows(run.commands), _rows(run.wheels), np.empty((0, 3)), measured)
+
+
+def _rows(inputs: Inputs | None) -> Floats:
+    if inputs is None:
+        return np.empty((0, 4))
+    return np.column_stack((inputs.t, inputs.v, inputs.vy, inputs.omega))
 
 
 def wrapped(angle: Floats, turn: float = 2.0 * np.pi) -> Floats:
     """Wrap angles [N] to half a turn on either side of 0."""
     return np.asarray((angle + 0.5 * turn) % turn - 0.5 * turn)
-
-
-def _windows(number: int, inputs: Inputs, poses: Poses, unknown_after: float) -> MotionWindows:
-    new_frame = np.flatnonzero(np.diff(poses.frame, prepend=-1))
-    start_time = poses.t[new_frame][np.searchsorted(new_frame, np.arange(len(poses)), side="right") - 1]
-    slot = np.floor((poses.t - start_time + _core.SAME_STAMP) / _LENGTH)
-    first = np.flatnonzero((np.diff(slot, prepend=-1.0) != 0.0) | (np.diff(poses.frame, prepend=-1) != 0))
-    i, j = first[:-1], first[1:]
-    duration = poses.t[j] - poses.t[i]
-    v, vy, omega = (
-        HeldSum.of(inputs, values, unknown_after) for values in (inputs.v, inputs.vy, inputs.omega)
-    )
-    good = (poses.frame[i] == poses.frame[j]) & (duration < _LONGEST - _core.SAME_STAMP)
-    good &= v.known(poses.t[i], poses.t[j]) > _KNOWN_PART * duration + _core.SAME_STAMP
-    i, j = i[good], j[good]
-    step = np.diff(poses.yaw, prepend=poses.yaw[:1])
-    followed, followed_degrees = np.cumsum(wrapped(step)), np.cumsum(wrapped(step, 360.0))
-    dx, dy = poses.x[j] - poses.x[i], poses.y[j] - poses.y[i]
-    return MotionWindows(
-        run=np.full(len(i), float(number)),
-        start=poses.t[i],
-        duration=duration[good],
-        distance=np.hypot(dx, dy),
-        course=np.arctan2(dy, dx),
-        turn=followed[j] - followed[i],
-        turn_degrees=followed_degrees[j] - followed_degrees[i],
-        start_yaw=poses.yaw[i],
-        forward=v.between(poses.t[i], poses.t[j]),
-        sideways=vy.between(poses.t[i], poses.t[j]),
-        rotation=omega.between(poses.t[i], poses.t[j]),
-    )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Refuses logs whose poses and inputs contradict each other: wrong units, swapped columns."""
+"""Finds poses and inputs of wrong units or in swapped columns, which logs are refused for."""
 
 from __future__ import annotations
 
@@ -7,13 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from slipwise.errors import LogError
+from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.input_units import likely_speeds, likely_turns
 from slipwise.logs.log import Floats
 from slipwise.logs.motion_windows import MotionWindows
 
-_ENOUGH = 15  # windows; with fewer nothing is said
-_ENOUGH_TURN = 3.0  # [rad] in total
+ENOUGH = 15  # windows; with fewer nothing is said
+ENOUGH_TURN = 3.0  # [rad] in total
+_MOST_JUMPS = 0.3  # part of all steps; more jumps than this are no accident
+_FEW_STEPS = 20  # with fewer no such judgement is made
 _DEGREES = 180.0 / np.pi
 _DEGREES_LOW, _DEGREES_HIGH = 0.3, 1.2  # poses turn so much of what inputs in degrees say
 _LEAST_TURN, _MOST_TURN = 0.08, 10.0  # of the inputs' turns; real robots turn 0.13 to 4.5 times
@@ -69,31 +71,39 @@ def agreement(windows: MotionWindows) -> Agreement:
     )
 
 
-def check_plausible(found: Agreement, inputs: str, where: str) -> None:
-    """Refuse what cannot be right.
+def implausible(found: Agreement, inputs: str) -> Contradiction | None:
+    """Say which units, columns or axes look wrong, and what to do.
 
     Args:
         found: of one kind of input.
         inputs: its name, "commands" or "wheels".
-        where: the file.
-
-    Raises:
-        LogError: units, columns or axes are wrong; says which look wrong and what to do.
     """
-    if found.windows < _ENOUGH:
-        return
+    if found.windows < ENOUGH:
+        return None
     for what, advice in (_units(found, inputs), _swapped(found, inputs), _mirrored(found)):
         if what:
-            raise LogError(what, where=where, advice=advice)
+            return Contradiction("implausible", what, (advice,))
+    return None
+
+
+def unreachable(jumping: int, steps: int) -> Contradiction | None:
+    """Say whether too many of the steps between poses jump further than the robot can have moved."""
+    if steps < _FEW_STEPS or jumping <= _MOST_JUMPS * steps:
+        return None
+    return Contradiction(
+        "unreachable-poses",
+        "most poses are out of reach of the inputs",
+        ("check the units of poses (m, rad) and inputs (m/s, rad/s) and that their clocks agree",),
+    )
 
 
 _FINE = ("", "")
 
 
 def _units(a: Agreement, inputs: str) -> tuple[str, str]:
-    turns = a.turning > _ENOUGH_TURN
+    turns = a.turning > ENOUGH_TURN
     by_turn = turns and abs(a.yaw_degrees) > 0.6 and a.yaw_ratio_degrees > 6.0
-    by_course = a.moving >= _ENOUGH and a.course_degrees > 0.8 and a.course < 0.4
+    by_course = a.moving >= ENOUGH and a.course_degrees > 0.8 and a.course < 0.4
     if a.largest_yaw > 7.0 and (by_turn or by_course):
         ratio = (
             f"{a.yaw_ratio_degrees:.0f} times the inputs' rate"
@@ -136,10 +146,10 @@ def _rates(a: Agreement, inputs: str) -> tuple[str, str]:
 def _swapped(a: Agreement, inputs: str) -> tuple[str, str]:
     by_distance = a.distance_omega > max(0.7, a.distance_v + 0.1)
     by_turn = abs(a.yaw_v) > max(0.55, abs(a.yaw_inputs) + 0.2)
-    if by_distance and by_turn and a.turning > _ENOUGH_TURN:
+    if by_distance and by_turn and a.turning > ENOUGH_TURN:
         what = f"columns look swapped: v and omega of the {inputs}"
         return what, "distances follow omega and turns follow v; exchange the two columns"
-    if a.moving >= _ENOUGH and a.course < 0.3 and a.course_mirrored < -0.7:
+    if a.moving >= ENOUGH and a.course < 0.3 and a.course_mirrored < -0.7:
         if a.yaw_inputs < -0.5:
             return "yaw looks like a compass heading", "use yaw = pi/2 - heading, counter-clockwise from x"
         what = "columns look swapped: x and y"
@@ -151,9 +161,9 @@ def _swapped(a: Agreement, inputs: str) -> tuple[str, str]:
 
 
 def _mirrored(a: Agreement) -> tuple[str, str]:
-    if a.moving >= _ENOUGH and a.course < 0.3 and a.course_mirrored > 0.7:
+    if a.moving >= ENOUGH and a.course < 0.3 and a.course_mirrored > 0.7:
         return "yaw runs clockwise while x and y do not", "change the sign of yaw"
-    if a.turning > _ENOUGH_TURN and a.yaw_inputs < -0.5:
+    if a.turning > ENOUGH_TURN and a.yaw_inputs < -0.5:
         if a.course > 0.5:
             advice = (
                 "poses are in a frame with z down: change the signs of y and yaw (x forward, y left, z up)"

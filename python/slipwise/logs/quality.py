@@ -9,15 +9,15 @@ import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.attitude import levelled
+from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.course_heading import as_positions, is_course
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Inputs, LeftOut, Log, Run, has_course
-from slipwise.logs.motion_windows import motion_windows
-from slipwise.logs.plausibility import agreement, check_plausible
+from slipwise.logs.log import LeftOut, Log, Run, has_course
+from slipwise.logs.motion_windows import evidence_of, measured_rows, motion_windows
+from slipwise.logs.plausibility import agreement, implausible, unreachable
 from slipwise.logs.pose_jumps import find_jumps, without_jumps
 
-_TOO_MANY = 0.3  # part of all steps; more jumps than this are no accident
 _HARDLY = 10.0  # times as many poses out of order as in order
 _SLOWEST = 10.0  # [s] between poses
 _FEW = 20  # steps; with fewer no such judgement is made
@@ -37,20 +37,15 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
     log = levelled(log)
     _check_forward(log, where)
     _check_seconds(log, where)
-    for name in ("commands", "wheels"):
-        pairs = [(inputs, run.poses) for run in log.runs if (inputs := _named(run, name)) is not None]
-        check_plausible(agreement(motion_windows(pairs, unknown_after)), name, where)
+    rows = measured_rows(log.runs, unknown_after)
+    for name in ("command", "wheel"):
+        _refuse(implausible(agreement(motion_windows(rows, name)), f"{name}s"), where)
     runs, found = _smoothed(log, unknown_after)
     if _heads_along_course(runs, unknown_after):
         log = as_positions(log)
         runs, found = _smoothed(log, unknown_after)
     steps = sum(max(len(run.poses) - 1, 0) for run in log.runs)
-    if steps >= _FEW and sum(entry.count for entry in found) > _TOO_MANY * steps:
-        raise LogError(
-            "most poses are out of reach of the inputs",
-            where=where,
-            advice="check the units of poses (m, rad) and inputs (m/s, rad/s) and that their clocks agree",
-        )
+    _refuse(unreachable(sum(entry.count for entry in found), steps), where)
     return replace(log, runs=runs, left_out=log.left_out + found)
 
 
@@ -65,9 +60,8 @@ def _heads_along_course(runs: tuple[Run, ...], unknown_after: float) -> bool:
     """Whether headings are a course over ground: they turn about where the robot reverses."""
     if has_course(runs):
         return False
-    name = "wheels" if any(run.wheels is not None for run in runs) else "commands"
-    pairs = [(inputs, run.poses) for run in runs if (inputs := _named(run, name)) is not None]
-    return is_course(motion_windows(pairs, unknown_after))
+    name = "wheel" if any(run.wheels is not None for run in runs) else "command"
+    return is_course(motion_windows(evidence_of(runs, unknown_after).windows, name))
 
 
 def _check_forward(log: Log, where: str) -> None:
@@ -94,8 +88,9 @@ def _check_seconds(log: Log, where: str) -> None:
         raise LogError(what, where=where, advice="stamps must be in seconds, not in ms, us or ns")
 
 
-def _named(run: Run, name: str) -> Inputs | None:
-    return run.commands if name == "commands" else run.wheels
+def _refuse(odd: Contradiction | None, where: str) -> None:
+    if odd is not None:
+        raise LogError(odd.sentence, where=where, advice=" ".join(odd.advice))
 
 
 def _smooth(run: Run, unknown_after: float, tally: Tally) -> Run:

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.log import Bools, Floats
-from slipwise.logs.motion_windows import MotionWindows
+from slipwise.logs.motion_windows import MotionWindows, run_name
 
 TURN_ARM = 0.3  # [m] at which a turn counts as distance
 _LEAST = 0.05  # [m] by the inputs in a window; slower driving may be inside a dead band
@@ -26,29 +27,27 @@ _SHOWN = 3  # stretches
 class Stretch:
     """A stretch of one run in which the robot was driven and did not move."""
 
-    run: int  # number of the pair of inputs and poses
+    run: int  # number of the run
     start: float  # [s] since the first pose of the run
     stop: float  # [s]
     still: float  # [s] in windows without motion
 
-    def words(self, runs: tuple[tuple[str, float], ...]) -> str:
+    def words(self, runs: Sequence[str]) -> str:
         """Say from when to when, and in which run where there are several."""
-        where = f" of run {runs[self.run][0]}" if len(runs) > 1 else ""
+        where = f" of run {run_name(runs, self.run)}" if len(runs) > 1 else ""
         return f"{self.start:.1f} to {self.stop:.1f} s{where}"
 
 
-def standstill(
-    windows: MotionWindows, runs: tuple[tuple[str, float], ...], cause: str
-) -> Contradiction | None:
+def standstill(windows: MotionWindows, runs: Sequence[str], cause: str) -> Contradiction | None:
     """Say whether the robot stands still for a part of the time that it is driven.
 
     Args:
         windows: of one kind of input.
-        runs: name and first stamp [s] of each run in `windows`.
+        runs: names, by the number of the run in `windows`.
         cause: what drives it, such as "it is commanded".
     """
     driven, still = _driven_and_still(windows)
-    stretches = _stretches(windows, still, runs)
+    stretches = _stretches(windows, still)
     seconds = sum(stretch.still for stretch in stretches)
     driven_seconds = float(windows.duration[driven].sum())
     longest = max((stretch.still for stretch in stretches), default=0.0)
@@ -84,14 +83,12 @@ def _motion(distance: Floats, turn: Floats) -> Floats:
     return np.asarray(distance + TURN_ARM * np.abs(turn))
 
 
-def _stretches(
-    windows: MotionWindows, still: Bools, runs: tuple[tuple[str, float], ...]
-) -> tuple[Stretch, ...]:
+def _stretches(windows: MotionWindows, still: Bools) -> tuple[Stretch, ...]:
     """Join windows that follow each other; single windows are no stretch."""
     stretches: list[Stretch] = []
     for k in np.flatnonzero(still).tolist():
         run, seconds = int(windows.run[k]), float(windows.duration[k])
-        start = float(windows.start[k]) - runs[run][1]
+        start = float(windows.since[k])
         last = stretches[-1] if stretches else None
         if last is not None and last.run == run and 0.0 <= start - last.stop < _STRETCH:
             stretches[-1] = Stretch(run, last.start, start + seconds, last.still + seconds)

@@ -11,6 +11,7 @@ from sample_positions import ANTENNA, BASIS, HORIZONS, SECONDS, SETTINGS, SLIP, 
 
 from slipwise import _core
 from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.logs import Log, Run
 from slipwise.logs.contradictions import contradictions
 from slipwise.segments import recording_of
@@ -41,6 +42,27 @@ def learned(run: Run) -> _core.MotionLearner:
     learner.push(recording_of(run))
     learner.end_run()
     return learner
+
+
+def test_a_gyro_that_is_learned_from_and_turns_otherwise_makes_no_good_model() -> None:
+    for scale, kinds in ((1.0, []), (57.3, ["gyro-turns-otherwise"]), (-1.0, ["gyro-turns-otherwise"])):
+        run = run_with_gyro(1, scale=scale)
+        learner = MotionLearner("wheel", SETTINGS, positions=True)
+        learner.start_run("live")
+        assert run.wheels is not None
+        rows = [(t, 0, i) for i, t in enumerate(run.wheels.t)]
+        rows += [(t, 1, i) for i, t in enumerate(run.poses.t)]
+        rows += [(t, 2, i) for i, t in enumerate(run.extra["t"])]
+        for t, stream, i in sorted(rows):
+            if stream == 0:
+                learner.push_wheels(t, run.wheels.v[i], run.wheels.omega[i])
+            elif stream == 1:
+                learner.push_position(t, run.poses.x[i], run.poses.y[i])
+            else:
+                learner.push_gyro(t, run.extra["gyro_z"][i])
+        found = learner.contradictions()
+        assert [each.kind for each in found] == kinds
+        assert all(each.spoils for each in found)
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from slipwise.calibration.prepared_run import collect_windows, prepare_run
 from slipwise.inspection import coverage_map
 from slipwise.logs import Inputs, Log, Run
 from slipwise.logs.held import HeldSum, held_for
-from slipwise.logs.motion_windows import motion_windows
+from slipwise.logs.motion_windows import evidence_of, motion_windows
 from slipwise.logs.pose_jumps import find_jumps
 
 SLOW = held(np.arange(0.0, 20.5, 1.0), v=1.0)  # a command every second
@@ -29,9 +29,9 @@ def test_a_sum_counts_an_input_until_it_is_too_old() -> None:
 
 
 def test_poses_are_compared_with_inputs_that_the_setting_calls_known() -> None:
-    pairs = [(SLOW, slow_run().poses)]
-    assert len(motion_windows(pairs, 0.5)) == 0
-    assert len(motion_windows(pairs, 1.5)) > 5
+    few, more = (evidence_of([slow_run()], known).windows for known in (0.5, 1.5))
+    assert len(motion_windows(few, "command")) == 0
+    assert len(motion_windows(more, "command")) > 5
 
 
 def test_driven_distances_and_maps_obey_the_setting() -> None:

@@ -4,10 +4,16 @@
 import numpy as np
 import pytest
 
-from slipwise.logs.log import Inputs, Poses
-from slipwise.logs.motion_windows import motion_windows, wrapped
+from slipwise.logs.log import Inputs, Poses, Run
+from slipwise.logs.motion_windows import MotionWindows, evidence_of, motion_windows, wrapped
 
 UNKNOWN_AFTER = 0.5
+
+
+def windows_of(*pairs: tuple[Inputs, Poses]) -> MotionWindows:
+    """Cut runs of commands and poses."""
+    runs = [Run(str(k), inputs, None, poses) for k, (inputs, poses) in enumerate(pairs)]
+    return motion_windows(evidence_of(runs, UNKNOWN_AFTER).windows, "command")
 
 
 def inputs(t: np.ndarray, v: float = 1.0, omega: float = 0.2) -> Inputs:
@@ -23,7 +29,7 @@ def poses(t: np.ndarray, frame: np.ndarray | None = None) -> Poses:
 
 def test_each_window_holds_what_was_driven_and_what_was_commanded() -> None:
     t = np.arange(0.0, 60.0, 0.1)
-    windows = motion_windows([(inputs(t), poses(t))], UNKNOWN_AFTER)
+    windows = windows_of((inputs(t), poses(t)))
     assert len(windows) >= 36
     np.testing.assert_allclose(windows.forward, windows.duration)
     np.testing.assert_allclose(windows.turn, 0.2 * windows.duration)  # past half turns, too
@@ -37,7 +43,7 @@ def test_no_window_spans_two_frames() -> None:
     frame = (t >= 10.05).astype(np.int64)
     there = poses(t, frame)
     jumped = Poses(t=t, x=there.x + 100.0 * frame, y=there.y, yaw=there.yaw, frame=frame)
-    windows = motion_windows([(inputs(t), jumped)], UNKNOWN_AFTER)
+    windows = windows_of((inputs(t), jumped))
     assert len(windows) >= 10
     assert windows.distance.max() < 3.0
 
@@ -45,20 +51,20 @@ def test_no_window_spans_two_frames() -> None:
 def test_no_window_is_where_inputs_are_unknown() -> None:
     t = np.arange(0.0, 30.0, 0.1)
     known = t[(t < 10.0) | (t > 20.0)]
-    whole = motion_windows([(inputs(t), poses(t))], UNKNOWN_AFTER)
-    windows = motion_windows([(inputs(known), poses(t))], UNKNOWN_AFTER)
+    whole = windows_of((inputs(t), poses(t)))
+    windows = windows_of((inputs(known), poses(t)))
     assert 0 < len(windows) < 0.75 * len(whole)
     np.testing.assert_allclose(windows.forward, windows.duration, rtol=0.5)
 
 
 def test_runs_are_joined_and_those_of_one_pose_have_no_window() -> None:
     t = np.arange(0.0, 20.0, 0.1)
-    one = motion_windows([(inputs(t), poses(t))], UNKNOWN_AFTER)
-    both = motion_windows(
-        [(inputs(t), poses(t)), (inputs(t), poses(t[:1])), (inputs(t), poses(t))], UNKNOWN_AFTER
-    )
+    one = windows_of((inputs(t), poses(t)))
+    both = windows_of((inputs(t), poses(t)), (inputs(t), poses(t[:1])), (inputs(t), poses(t)))
     assert len(both) == 2 * len(one)
-    assert len(motion_windows([], UNKNOWN_AFTER)) == 0
+    assert both.run.max() == 2
+    np.testing.assert_allclose(both.since, np.tile(one.since, 2))
+    assert len(windows_of()) == 0
 
 
 @pytest.mark.parametrize("angle", [-9.0, -3.2, 0.0, 3.0, 3.2, 100.0])

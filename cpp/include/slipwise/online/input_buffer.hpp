@@ -21,6 +21,14 @@ struct InputSample {
   BodyTwist twist;
 };
 
+/// What inputs say over a time: the integrals of their speeds, and for how long they are known.
+struct HeldMotion {
+  double forward;   ///< [m]
+  double sideways;  ///< [m]
+  double rotation;  ///< [rad]
+  double known;     ///< [s]
+};
+
 /// How a slice of the history begins, and what of it is kept.
 enum class SliceKind : std::uint8_t {
   Commands,  ///< before the first one the robot is at rest; repeats are thinned
@@ -66,6 +74,8 @@ class InputBuffer {
     double known;     ///< [s]
   };
   Driven driven(double start, double end) const;
+  /// The integrals over [start, end] [s], while inputs are known.
+  HeldMotion held_motion(double start, double end) const;
   /// The motion over [start, end] [s] that the inputs held then make, T_start_end.
   Pose2 reckoned(double start, double end) const;
 

@@ -96,6 +96,7 @@ struct LearnedModel {
   std::size_t segments;
   RejectionCounts rejected;
   std::optional<CarCurves> car = {};  ///< where commands are throttle and steering
+  MotionEvidence evidence = {};       ///< whether poses and inputs contradict each other
 };
 
 /// Streams must be in order each; they may be late relative to each other by the latency of the settings. No push

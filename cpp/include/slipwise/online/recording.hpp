@@ -39,6 +39,9 @@ struct CutRuns {
 /// The segments that a learner with these settings learns.
 CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> runs);
 
+/// What a learner with these settings knows of contradictions after recorded runs.
+MotionEvidence motion_evidence(const StreamSettings& settings, std::span<const Recording> runs);
+
 /// About what a car makes of each command of throttle and steering (`settings.car`): what a learner's gates see.
 std::vector<std::vector<InputSample>> expected_commands(const StreamSettings& settings,
                                                         std::span<const Recording> runs);

@@ -17,6 +17,7 @@
 #include "slipwise/online/gyro_buffer.hpp"
 #include "slipwise/online/hold_times.hpp"
 #include "slipwise/online/input_buffer.hpp"
+#include "slipwise/online/motion_evidence.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
 #include "slipwise/online/pose_source.hpp"
@@ -112,6 +113,10 @@ class SegmentStream {
   const AttitudeGate& attitudes() const { return attitudes_; }
   const InputBuffer& wheels() const { return wheels_; }
   const StreamSettings& settings() const { return settings_; }
+  /// Stamps are counted from `origin` [s] from now on, which matters to what is said of them alone.
+  void count_from(double origin) { evidence_.count_from(origin); }
+  /// What shows whether poses and inputs contradict each other.
+  const MotionEvidence& evidence() const { return evidence_; }
   bool wheels_known() const { return wheels_ever_; }
   /// Least and greatest speed, then yaw rate, of the inputs that motion is predicted from, of all runs.
   const std::array<double, 4>& range() const { return range_; }
@@ -149,7 +154,7 @@ class SegmentStream {
     a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
       self.learned_last_);
     a(self.chords_, self.position_last_, self.gyro_, self.heading_, self.others_, self.turned_until_, self.turned_,
-      self.attitudes_);
+      self.attitudes_, self.evidence_);
   }
 
  private:
@@ -228,6 +233,7 @@ class SegmentStream {
   std::vector<PoseSource> others_;       ///< sources of poses beside the first
   std::optional<YawRate> turned_until_;  ///< the last yaw rate, where these alone are learned from
   double turned_ = 0.0;                  ///< integral of yaw rates [rad]
+  MotionEvidence evidence_;
 };
 
 }  // namespace slipwise

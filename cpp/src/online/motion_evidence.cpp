@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Windows, pairs and sums of what a stream uses.
+#include "slipwise/online/motion_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slipwise/linear/same_stamp.hpp"
+#include "slipwise/online/sample_gate.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kSecond = 1.0;               // [s] over which turns are compared
+constexpr double kTurning = 0.1;              // [rad/s] of the inputs
+constexpr double kKnownPart = 0.9;            // of a second, inputs must be known
+constexpr double kLongestGap = 4.0;           // [s] between yaw rates; nothing is compared across a longer one
+constexpr std::size_t kMostYawRates = 20000;  // that wait where neither poses nor inputs come
+constexpr std::size_t kMostRuns = 100;
+
+}  // namespace
+
+void MotionEvidence::start_run() {
+  run_.number += run_begins_ ? 0 : 1;
+  run_begins_ = true;
+  measured_.start_run();
+  accepted_.start_run();
+  probes_.start_run();
+  yaw_rates_.clear();
+  second_.reset();
+}
+
+void MotionEvidence::end_run(const InputBuffer& wheels) { probes_.end_run(wheels); }
+
+void MotionEvidence::see_stamp(double t) { run_begins_ = run_begins_ && !(std::abs(run_.origin + t) <= kLatestStamp); }
+
+void MotionEvidence::see_measured(const MeasuredPose& pose, const InputBuffer& commands, const InputBuffer& wheels) {
+  measured_.push(run_, pose, commands, wheels);
+}
+
+void MotionEvidence::see_gated(const GatedPoses& gated, const InputBuffer& commands, const InputBuffer& wheels) {
+  for (const MeasuredPose& pose : gated.accepted) {
+    accepted_.push(run_, pose, commands, wheels);
+    probes_.push(pose, wheels);
+  }
+  counts_.accepted += gated.accepted.size();
+  counts_.outliers += gated.outliers.size();
+  counts_.jumps += gated.jumps.size();
+}
+
+void MotionEvidence::compare_gyro(double t, const InputBuffer& commands, const InputBuffer& wheels) {
+  while (yaw_rates_.size() > 1) {
+    second_ = second_.value_or(yaw_rates_.front().t);
+    const double end = *second_ + kSecond;
+    if (later(yaw_rates_[1].t, yaw_rates_[0].t + kLongestGap)) {
+      yaw_rates_.pop_front();
+      second_.reset();
+    } else if (yaw_rates_[1].t <= *second_) {
+      yaw_rates_.pop_front();
+    } else if (end > t || !later(yaw_rates_.back().t, end)) {
+      break;
+    } else {
+      compare_second(wheels.empty() || later(wheels.first(), *second_) ? commands : wheels);
+      second_ = end;
+    }
+  }
+  while (yaw_rates_.size() > kMostYawRates) {
+    yaw_rates_.pop_front();
+    second_.reset();
+  }
+}
+
+/// Adds the second that begins at `second_`.
+void MotionEvidence::compare_second(const InputBuffer& inputs) {
+  const double start = *second_;
+  const HeldMotion held = inputs.held_motion(start, start + kSecond);
+  if (std::abs(held.rotation) <= kTurning * kSecond || held.known <= kKnownPart * kSecond + kSameStamp) {
+    return;
+  }
+  if (gyro_turns_.empty() || gyro_turns_.back().run != run_.number) {
+    gyro_turns_.push_back({.run = run_.number});
+    if (gyro_turns_.size() > kMostRuns) {
+      gyro_turns_.pop_front();
+    }
+  }
+  const double turned = turn_until(start + kSecond) - turn_until(start);
+  GyroTurns& turns = gyro_turns_.back();
+  ++turns.count;
+  turns.product += held.rotation * turned;
+  turns.square += held.rotation * held.rotation;
+}
+
+/// The gyro's turn from its first sample to `t`, rates between samples being on a line [rad].
+double MotionEvidence::turn_until(double t) const {
+  double turn = 0.0;
+  for (std::size_t i = 1; i < yaw_rates_.size() && yaw_rates_[i - 1].t < t; ++i) {
+    const YawRate& before = yaw_rates_[i - 1];
+    const YawRate& after = yaw_rates_[i];
+    const double part = std::min(1.0, (t - before.t) / (after.t - before.t));
+    turn += 0.5 * part * (after.t - before.t) * (before.rate + after.rate);
+  }
+  return turn;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Windows begin at the first pose of each 1.5 s of a frame.
+#include "slipwise/online/motion_window.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "slipwise/linear/same_stamp.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kLength = 1.5;             // [s]
+constexpr double kLongest = 4.0;            // [s] poses may be missing for a while
+constexpr double kKnownPart = 0.9;          // of a window's time, inputs must be known
+constexpr double kChord = 0.1;              // [m] from one position to the next that tells a course
+constexpr std::size_t kMostWindows = 4000;  // a hundred minutes
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+}  // namespace
+
+double within_half_turn(double angle, double turn) { return angle - turn * std::floor(angle / turn + 0.5); }
+
+void WindowCutter::start_run() {
+  run_began_.reset();
+  first_.reset();
+  last_.reset();
+  course_from_.reset();
+}
+
+void WindowCutter::push(const NumberedRun& run, const MeasuredPose& pose, const InputBuffer& commands,
+                        const InputBuffer& wheels) {
+  Seen seen{.t = pose.t, .x = pose.x, .y = pose.y, .yaw = pose.yaw, .frame = pose.frame};
+  run_began_ = run_began_.value_or(seen.t);
+  const bool begins = !last_ || last_->frame != seen.frame;
+  if (begins) {
+    course_from_.reset();
+  }
+  if (pose.position) {
+    seen.yaw = course(seen, wheels.empty() || later(wheels.first(), seen.t) ? commands : wheels);
+  }
+  if (begins) {
+    frame_began_ = seen.t;
+    slot_ = turn_ = turn_degrees_ = 0.0;
+    first_ = last_ = seen;
+    return;
+  }
+  turn_ += within_half_turn(seen.yaw - last_->yaw, kTurn);
+  turn_degrees_ += within_half_turn(seen.yaw - last_->yaw, 360.0);
+  last_ = seen;
+  const double slot = std::floor((seen.t - frame_began_ + kSameStamp) / kLength);
+  if (slot != slot_) {
+    close(run, seen, commands, wheels);
+    slot_ = slot;
+    turn_ = turn_degrees_ = 0.0;
+    first_ = seen;
+  }
+}
+
+void WindowCutter::close(const NumberedRun& run, const Seen& last, const InputBuffer& commands,
+                         const InputBuffer& wheels) {
+  const Seen& first = *first_;
+  const double duration = last.t - first.t;
+  const HeldMotion commanded = commands.held_motion(first.t, last.t);
+  const HeldMotion rolled = wheels.held_motion(first.t, last.t);
+  const bool known = std::max(commanded.known, rolled.known) > kKnownPart * duration + kSameStamp;
+  if (duration >= kLongest - kSameStamp || !known) {
+    return;
+  }
+  windows_.push_back({.run = run.number,
+                      .start = run.origin + first.t,
+                      .since = first.t - *run_began_,
+                      .duration = duration,
+                      .distance = std::hypot(last.x - first.x, last.y - first.y),
+                      .course = std::atan2(last.y - first.y, last.x - first.x),
+                      .turn = turn_,
+                      .turn_degrees = turn_degrees_,
+                      .start_yaw = first.yaw,
+                      .commands = commanded,
+                      .wheels = rolled});
+  if (windows_.size() > kMostWindows) {
+    windows_.pop_front();
+  }
+}
+
+/// Where the path heads at a position, as far as it has come.
+double WindowCutter::course(const Seen& position, const InputBuffer& inputs) {
+  if (!course_from_) {
+    course_from_ = position;
+  }
+  const double dx = position.x - course_from_->x;
+  const double dy = position.y - course_from_->y;
+  if (std::hypot(dx, dy) >= kChord) {
+    const bool backward = inputs.held_at(position.t).value_or(BodyTwist{}).v < 0.0;
+    course_ = backward ? std::atan2(-dy, -dx) : std::atan2(dy, dx);
+    course_from_ = position;
+  }
+  return course_;
+}
+
+}  // namespace slipwise
