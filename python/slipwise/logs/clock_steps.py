@@ -45,7 +45,7 @@ def set_back_words(seconds: float) -> str:
 def steps_back(t: Floats) -> Ints:
     """Return where stamps [N] of one stream are set back for good: the first stamp of each stretch.
 
-    A lone stamp far ahead, which the next ones take back, sets no clock.
+    A lone stamp far ahead, which the next ones take back, sets no clock, nor do stamps that were never set (0).
     """
     steady = t[np.isfinite(t)]
     places = np.flatnonzero(np.isfinite(t))
@@ -58,7 +58,7 @@ def steps_back(t: Floats) -> Ints:
         newest = max(newest, float(steady[begin:drop].max(initial=-np.inf)))
         after = steady[drop : drop + ENOUGH]
         ahead = np.diff(after)
-        agree = ((ahead >= 0.0) & (ahead <= AGREE)).all()
+        agree = ((ahead >= 0.0) & (ahead <= AGREE)).all() and ahead.any()
         if len(after) == ENOUGH and agree and (after < newest - BACK).all():
             found.append(int(places[drop]))
             newest = -np.inf

@@ -42,9 +42,9 @@ def test_a_downward_import_keeps_it(tmp_path: Path) -> None:
 
 
 def test_a_package_without_a_layer_breaks_the_contract(tmp_path: Path) -> None:
-    result = lint(tmp_path, {"extras": ""})
+    result = lint(tmp_path, {"without_layer": ""})
     assert result.returncode == 1
-    assert "extras" in result.stdout
+    assert "without_layer" in result.stdout
 
 
 def test_every_part_of_the_package_has_a_layer() -> None:

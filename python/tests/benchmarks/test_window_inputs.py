@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 from sample_logs import Drive, simulated_log
-from slipwise.evaluation.window_inputs import (
+from window_inputs import (
     BINS,
     BINS_BEFORE,
     beside,
