@@ -45,7 +45,7 @@ def set_back_words(seconds: float) -> str:
 def steps_back(t: Floats) -> Ints:
     """Return where stamps [N] of one stream are set back for good: the first stamp of each stretch.
 
-    A lone stamp far ahead, which the next ones take back, sets no clock, nor do stamps that were never set (0).
+    A lone stamp far ahead, which the next ones take back, sets no clock; nor do stamps that were never set.
     """
     steady = t[np.isfinite(t)]
     places = np.flatnonzero(np.isfinite(t))

@@ -98,7 +98,7 @@ def test_the_command_lines_of_the_readme_run(drive: Path, tmp_path: Path) -> Non
         words = [sys.executable, "-m", *shlex.split(line, comments=True)]
         environment = os.environ | {"ROS_DISTRO": "jazzy"}
         done = subprocess.run(
-            words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300
+            words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300, check=False
         )
         if done.returncode:
             failed.append(f"{line}: {done.returncode}\n{done.stdout[-500:]}{done.stderr[-500:]}")
