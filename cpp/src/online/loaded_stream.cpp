@@ -44,6 +44,32 @@ void CarStream::check_loaded(const CarStream& made) const {
   require(!known_.empty(), "nothing is known of the car");
 }
 
+void WindowCutter::check_loaded() const {
+  const auto finite = [](const MotionWindow& w) {
+    const auto& [forward, sideways, rotation, known] = w.commands;
+    return std::isfinite(w.start + w.since + w.duration + w.distance + w.course + w.turn + w.turn_degrees +
+                         w.start_yaw + forward + sideways + rotation + known + w.wheels.forward + w.wheels.sideways +
+                         w.wheels.rotation + w.wheels.known);
+  };
+  require(std::ranges::all_of(windows_, finite) && first_.has_value() == last_.has_value(),
+          "windows of motion have numbers that none has");
+}
+
+void ProbeCutter::check_loaded() const {
+  const auto forward = [](const WheelProbe& probe) { return goes_forward(probe.path, &StampedPose::t); };
+  require(goes_forward(open_, &StampedPose::t) && std::ranges::all_of(probes_, forward),
+          "paths of wheels are not in the order of time");
+}
+
+void MotionEvidence::check_loaded() const {
+  measured_.check_loaded();
+  accepted_.check_loaded();
+  probes_.check_loaded();
+  require(goes_forward(yaw_rates_, &YawRate::t) &&
+              (!second_ || (!yaw_rates_.empty() && std::isfinite(*second_) && yaw_rates_.front().t <= *second_)),
+          "turns are compared before there are any");
+}
+
 void SegmentStream::check_loaded(const SegmentStream& made) const {
   require(archive::same(settings_, made.settings_) && archive::same(keep_, made.keep_) &&
               targets_.size() == made.targets_.size() && others_.size() == made.others_.size() &&
@@ -67,6 +93,7 @@ void SegmentStream::check_loaded(const SegmentStream& made) const {
   if (car_) {
     car_->check_loaded(*made.car_);
   }
+  evidence_.check_loaded();
   require(goes_forward(poses_, &MeasuredPose::t) && std::ranges::is_sorted(wheel_stamps_) && !std::isnan(newest_) &&
               std::ranges::none_of(wheel_stamps_, [](double t) { return !std::isfinite(t); }),
           "what waits is not in the order of time");

@@ -51,6 +51,9 @@ class MotionEvidence {
   /// Compares the turns of whole seconds before `t` [s], until which inputs are known.
   void compare_gyro(double t, const InputBuffer& commands, const InputBuffer& wheels);
 
+  /// \throws std::invalid_argument when what was loaded cannot be.
+  void check_loaded() const;
+
   /// Windows of poses as they were measured.
   const std::deque<MotionWindow>& measured_windows() const { return measured_.windows(); }
   /// Windows of poses that the gate accepted.

@@ -41,6 +41,8 @@ class WindowCutter {
   /// drives backward.
   void push(const NumberedRun& run, const MeasuredPose& pose, const InputBuffer& commands, const InputBuffer& wheels);
   const std::deque<MotionWindow>& windows() const { return windows_; }
+  /// \throws std::invalid_argument when what was loaded cannot be.
+  void check_loaded() const;
 
   /// Names what is saved.
   template <class Self, class Archive>

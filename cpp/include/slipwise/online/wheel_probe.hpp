@@ -37,6 +37,8 @@ class ProbeCutter {
   /// Takes a pose, to whose stamp `wheels` are known.
   void push(const MeasuredPose& pose, const InputBuffer& wheels);
   const std::vector<WheelProbe>& probes() const { return probes_; }
+  /// \throws std::invalid_argument when what was loaded cannot be.
+  void check_loaded() const;
 
   /// Names what is saved.
   template <class Self, class Archive>
