@@ -89,9 +89,9 @@ def sound() -> Log:
     return sound_log(DRIVE)
 
 
-def lived(log: Log, folder: Path, **table: object) -> tuple[Built, Scripted]:
+def lived(log: Log, folder: Path, input_name: str = "wheel", **table: object) -> tuple[Built, Scripted]:
     """Run a node that hands on whatever it may."""
-    (run,) = prepare_run(log, "wheel")
+    (run,) = prepare_run(log, input_name)
     apply = ApplyTable(
         mode="auto",
         folder=str(folder),
@@ -101,7 +101,7 @@ def lived(log: Log, folder: Path, **table: object) -> tuple[Built, Scripted]:
         rate=1.0,
         ros_distro="jazzy",
     )
-    return run_node(list(samples_of(run)), LiveTable(apply=apply, **table), "wheel")  # type: ignore[arg-type]
+    return run_node(list(samples_of(run)), LiveTable(apply=apply, **table), input_name)  # type: ignore[arg-type]
 
 
 def faults_of(built: Built, transport: Scripted, folder: Path) -> list[str]:
@@ -141,12 +141,13 @@ def test_nothing_is_handed_on_of_a_stream_that_contradicts_itself(name: str, tmp
 
 
 @pytest.mark.slow
-def test_no_stream_that_contradicts_itself_is_handed_on(tmp_path: Path) -> None:
+@pytest.mark.parametrize("input_name", ["wheel", "command"])
+def test_no_stream_that_contradicts_itself_is_handed_on(input_name: str, tmp_path: Path) -> None:
     faults = {}
     for number, (name, change) in enumerate(STREAMS.items()):
         folder = tmp_path / str(number)
         folder.mkdir()
-        found = faults_of(*lived(change(sound()), folder), folder)
+        found = faults_of(*lived(change(sound()), folder, input_name), folder)
         if found:
             faults[name] = found
     assert faults == {}
