@@ -187,6 +187,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "BayesianRegression": _regression,
     "Basis": lambda: _core.named_basis("edd-2"),
     "ActuatorFilter": _chain_learner,
+    "MotionEvidence": lambda: _core.motion_evidence(_core.StreamSettings(), []),
     "ForceFrame": lambda: _core.ForceFrame.Body,
     "DisturbanceFilter": lambda: _core.DisturbanceFilter(_law()),
     "CommandLimits": _limits,
