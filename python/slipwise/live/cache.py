@@ -58,7 +58,7 @@ class Cache:
     """A folder with one file of state and the last valid model for each vehicle and input.
 
     One node at a time has it, until `close` or the end of the process. A state that ended two starts is not
-    tried a third time: a start counts as begun until something was saved or the node ended in order.
+    tried a third time: a start is over once the node works, saved something or ended in order.
 
     Raises:
         SettingsError: the vehicle has no name that a file can bear.
@@ -96,7 +96,7 @@ class Cache:
         head = json.dumps({"key": asdict(self._key), "valid": valid is not None}).encode()
         body = _core.sealed(len(head).to_bytes(_LENGTH_BYTES, "little") + head + saved)
         write_whole(self.state, lambda place: _write(place, body))
-        self._starts.unlink(missing_ok=True)
+        self.works()
 
     def load(self) -> Remembered:
         """Return what is remembered; what cannot be used is set aside, and said, never raised.
@@ -127,11 +127,15 @@ class Cache:
             return Remembered(None, None, self._set_aside(f"the cache cannot be read: {problem}"))
         return Remembered(learner, valid, f"goes on from {self.state}")
 
+    def works(self) -> None:
+        """The node works with what was loaded: this start is over."""
+        with contextlib.suppress(OSError):
+            self._starts.unlink(missing_ok=True)
+
     def close(self) -> None:
         """Let another node have it: this one ended in order."""
         if self._held is not None:
-            with contextlib.suppress(OSError):
-                self._starts.unlink(missing_ok=True)
+            self.works()
             self._held.close()
             self._held = None
 
@@ -139,13 +143,15 @@ class Cache:
         """Lock the cache; the system lifts the lock when the process ends, however it does.
 
         Raises:
-            OutputError: another node has it, or the folder cannot be written to.
+            OutputError: another node has it.
         """
         if self._held is not None:
             return
-        with output_errors(self._lock):
+        try:
             self._lock.parent.mkdir(parents=True, exist_ok=True)
             held = self._lock.open("ab")
+        except OSError:
+            return  # nothing can be written there: the first save says so, and the node learns meanwhile
         try:
             fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as problem:
@@ -165,7 +171,8 @@ class Cache:
             starts = int(self._starts.read_text(encoding="ascii")) + 1
         except (OSError, ValueError):
             starts = 1
-        write_text_whole(self._starts, f"{starts}\n")
+        with contextlib.suppress(OutputError):  # a full disk keeps nobody from starting
+            write_text_whole(self._starts, f"{starts}\n")
         return starts
 
     def _difference(self, found: dict[str, object]) -> str:

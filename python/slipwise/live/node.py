@@ -38,6 +38,7 @@ REST = 0.01  # s between two looks for samples
 ODOMETRY_EVERY = 0.02  # s of stamps
 STATUS_EVERY = 0.2  # s of the wall clock
 NOTICES_EVERY = 1.0  # s of the wall clock
+WORKS_AFTER = 5.0  # s of the wall clock with samples, after which what was loaded is sound
 AHEAD = 2.0  # s that the present command is predicted
 
 _log = logging.getLogger(__name__)
@@ -73,7 +74,7 @@ class LiveNode:
         self._odometry: Odometry | None = None
         self._stuck = False
         self._parameters: tuple[ParameterNow, ...] = ()
-        self._next = dict.fromkeys(("status", "notices", "save"), 0.0)  # s of the wall clock
+        self._next = dict.fromkeys(("status", "notices", "save", "works"), 0.0)  # s of the wall clock
         self._given: tuple[Model, str] | None = None  # the model that others have, and which it is
         self._unsaved: SlipwiseError | None = None  # why the state was not saved the last time
         self._handed: Model | None = None  # what files and nodes were given
@@ -90,6 +91,7 @@ class LiveNode:
         """
         parts = self._parts
         self._next["save"] = time.monotonic() + parts.save_every
+        self._next["works"] = time.monotonic() + WORKS_AFTER
         try:
             parts.transport.subscribe(self._arrive)
             while not self._stopped.is_set():
@@ -295,6 +297,10 @@ class LiveNode:
         if now >= self._next["status"]:
             self._next["status"] = now + STATUS_EVERY
             self._publish_status()
+        if now >= self._next["works"] and math.isfinite(self._parts.intake.newest):
+            self._next["works"] = math.inf
+            if self._parts.cache is not None:
+                self._parts.cache.works()
         if now >= self._next["save"]:
             self._next["save"] = now + self._parts.save_every
             self.save()

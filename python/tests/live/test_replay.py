@@ -86,7 +86,7 @@ def test_runs_of_a_log_stay_apart() -> None:
 
 def through_pipe(log: Log, input_name: str) -> Built:
     results = io.BytesIO()
-    lines = io.BytesIO("".join(lines_of(log, input_name)).encode())
+    lines = io.BytesIO("\n".join(lines_of(log, input_name)).encode())
     built = build_node(Pipe(lines, results), input_name, Settings(), run="a pipe")
     built.node.run()
     said = [json.loads(line) for line in results.getvalue().splitlines()]
