@@ -126,7 +126,9 @@ def _known(
     space = CommandSpace(**limits)
     if prior is not None:
         return space, new_robot_knowledge(KnownFleet.load(prior))
-    return space, prior_knowledge(space) if learned is None else knowledge_of(learned)
+    if learned is None or not learned.content.parameters:  # the baseline predicts best
+        return space, prior_knowledge(space)
+    return space, knowledge_of(learned)
 
 
 def _write(

@@ -5,11 +5,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from cli.conftest import Result
 from sample_models import make_model, named
+
+from slipwise import _core
+from slipwise.cli.excite import _known
+from slipwise.excitation import CommandSpace, prior_knowledge
 
 Slipwise = Callable[..., Result]
 QUICK = ("--area", "20x20", "--minutes", "0.4")
@@ -57,3 +62,12 @@ def test_wrong_use_ends_with_code_2_and_says_why(
     assert result.code == 2
     assert message in result.err
     assert not list(folder.glob("excite.*"))
+
+
+def test_of_a_model_that_learned_nothing_the_prior_is_what_is_known(folder: Path) -> None:
+    model = make_model(replace(named("edd-2"), basis=_core.Basis("none", [], [], []), values={}))
+    assert not model.content.parameters
+    model.save(folder / "nothing.yaml")
+    given = {"speed": 1.0, "yaw_rate": 1.0}
+    _, known = _known((folder / "nothing.yaml", None), None, given)
+    assert known.names == prior_knowledge(CommandSpace(1.0, 1.0)).names
