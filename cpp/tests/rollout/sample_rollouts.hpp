@@ -117,6 +117,11 @@ inline std::vector<SampleChain> sample_chains() {
           {"delays alone, one of them negative", {.delays = true}, {0.13, -0.02}}};
 }
 
+/// What a rollout knows of its drive: a speed at the start, and that any inputs may follow.
+inline MeasuredActuator measured_start(const MotionModel& model, const Eigen::VectorXd& parameters) {
+  return {.twist = nullptr, .until = -model.actuator(parameters).clock_offset, .any_inputs = true};
+}
+
 inline Eigen::VectorXd sample_parameters(const MotionModel& model, const SampleChain& actuator) {
   Eigen::VectorXd parameters(model.size());
   const Eigen::VectorXd slip = sample_slip(model.basis(), 31);

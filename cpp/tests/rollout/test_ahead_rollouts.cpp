@@ -44,6 +44,7 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
     Segment segment{.start = 0.0,
                     .end = kPeriod * static_cast<double>(commands.periods),
                     .initial = BodyTwist{kStart[0].drive.v, 0.0, kStart[0].drive.omega}};
+    segment.known = tests::measured_start(model, parameters);
     if (rise != 0.0) {
       segment.ground =
           std::make_shared<const Ground>(Grade{.rise_x = rise * std::cos(theta), .rise_y = -rise * std::sin(theta)});

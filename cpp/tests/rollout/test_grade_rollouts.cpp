@@ -35,6 +35,7 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
                     .end = kPeriod * static_cast<double>(commands.periods),
                     .initial = BodyTwist{kStart[0].drive.v, 0.0, kStart[0].drive.omega}};
     segment.ground = ground;
+    segment.known = tests::measured_start(model, parameters);
     const SegmentPath path = integrate_segment(model, parameters, commands.input_history(n, kPast), segment);
     const Pose2 end = compose(kStart[0].pose, path.poses.back());
     const std::size_t i = (commands.periods - 1) * commands.rollouts + n;

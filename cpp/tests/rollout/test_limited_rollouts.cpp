@@ -92,8 +92,12 @@ Worst error(const RolloutProgram& program, const MotionModel& model, Eigen::Vect
     const InputHistory history = limited_inputs(repeated(commands.input_history(n, kPast), program.pieces(), offset),
                                                 program.setting().limits, piece);
     for (std::size_t k = commands.periods; k >= 1; k /= 3) {
-      const Segment segment{
-          .start = 0.0, .end = commands.period * static_cast<double>(k), .initial = drive, .gx = 0.3, .gy = -0.2};
+      const Segment segment{.start = 0.0,
+                            .end = commands.period * static_cast<double>(k),
+                            .initial = drive,
+                            .gx = 0.3,
+                            .gy = -0.2,
+                            .known = tests::measured_start(model, parameters)};
       const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
       const std::size_t i = (k - 1) * commands.rollouts + n;
       worst.xy = std::max(worst.xy,

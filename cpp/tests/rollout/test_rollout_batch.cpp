@@ -31,8 +31,12 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
   for (std::size_t n = 0; n < commands.rollouts; n += 5) {
     const InputHistory history = commands.input_history(n, kPast);
     for (std::size_t k = commands.periods; k >= fewest; k /= 3) {
-      const Segment segment{
-          .start = 0.0, .end = commands.period * static_cast<double>(k), .initial = drive, .gx = 0.3, .gy = -0.2};
+      const Segment segment{.start = 0.0,
+                            .end = commands.period * static_cast<double>(k),
+                            .initial = drive,
+                            .gx = 0.3,
+                            .gy = -0.2,
+                            .known = tests::measured_start(model, parameters)};
       const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
       const std::size_t i = (k - 1) * commands.rollouts + n;
       worst =
