@@ -108,9 +108,10 @@ void SurfaceBank::check_loaded(const SurfaceBank& made,
           "the bank of surfaces names one that is not there");
   for (const Surface& surface : surfaces_) {
     for (std::size_t i = 0; i < kAverages; ++i) {
-      require(!surface.memories[i] || averages[i] != nullptr, "a surface is remembered by nobody");
-      if (surface.memories[i]) {
-        averages[i]->check_memory(*surface.memories[i]);
+      const auto& memory = surface.memories[i];
+      require(!memory || averages[i] != nullptr, "a surface is remembered without an average");
+      if (memory) {
+        averages[i]->check_memory(*memory);
       }
     }
   }

@@ -5,6 +5,7 @@
 
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/archive/same.hpp"
+#include "slipwise/linear/present.hpp"
 #include "slipwise/online/known_sources.hpp"
 #include "slipwise/online/segment_stream.hpp"
 
@@ -91,7 +92,7 @@ void SegmentStream::check_loaded(const SegmentStream& made) const {
     others_[i].gate.check_loaded();
   }
   if (car_) {
-    car_->check_loaded(*made.car_);
+    car_->check_loaded(present(made.car_));
   }
   evidence_.check_loaded();
   require(goes_forward(poses_, &MeasuredPose::t) && std::ranges::is_sorted(wheel_stamps_) && !std::isnan(newest_) &&

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "slipwise/linear/present.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
@@ -46,8 +47,8 @@ void WindowCutter::push(const NumberedRun& run, const MeasuredPose& pose, const 
     first_ = last_ = seen;
     return;
   }
-  turn_ += within_half_turn(seen.yaw - last_->yaw, kTurn);
-  turn_degrees_ += within_half_turn(seen.yaw - last_->yaw, 360.0);
+  turn_ += within_half_turn(seen.yaw - present(last_).yaw, kTurn);
+  turn_degrees_ += within_half_turn(seen.yaw - present(last_).yaw, 360.0);
   last_ = seen;
   const double slot = std::floor((seen.t - frame_began_ + kSameStamp) / kLength);
   if (slot != slot_) {
@@ -60,7 +61,7 @@ void WindowCutter::push(const NumberedRun& run, const MeasuredPose& pose, const 
 
 void WindowCutter::close(const NumberedRun& run, const Seen& last, const InputBuffer& commands,
                          const InputBuffer& wheels) {
-  const Seen& first = *first_;
+  const Seen& first = present(first_);
   const double duration = last.t - first.t;
   const HeldMotion commanded = commands.held_motion(first.t, last.t);
   const HeldMotion rolled = wheels.held_motion(first.t, last.t);
@@ -70,7 +71,7 @@ void WindowCutter::close(const NumberedRun& run, const Seen& last, const InputBu
   }
   windows_.push_back({.run = run.number,
                       .start = run.origin + first.t,
-                      .since = first.t - *run_began_,
+                      .since = first.t - present(run_began_),
                       .duration = duration,
                       .distance = std::hypot(last.x - first.x, last.y - first.y),
                       .course = std::atan2(last.y - first.y, last.x - first.x),

@@ -2,17 +2,18 @@
 // Whether two values would be saved as the same bytes.
 #pragma once
 
+#include <array>
+
 #include "slipwise/archive/writer.hpp"
 
 namespace slipwise::archive {
 
 template <class T>
 bool same(const T& one, const T& other) {
-  Writer first;
-  Writer second;
-  first(one);
-  second(other);
-  return first.bytes() == second.bytes();
+  std::array<Writer, 2> writers;
+  writers[0](one);
+  writers[1](other);
+  return writers[0].bytes() == writers[1].bytes();
 }
 
 }  // namespace slipwise::archive
