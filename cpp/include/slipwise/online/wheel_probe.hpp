@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of poses a second apart with the path that the wheels make about them: odometry passed off as poses shows there.
+// Pairs of poses a second apart with the path that the wheels make about them: odometry passed off as poses shows.
 #pragma once
 
 #include <cstddef>
