@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/present.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 
@@ -44,8 +45,8 @@ void GyroBuffer::see_inputs(double t, const InputBuffer& inputs, double still_sp
     seen_until_ = t;
     return;
   }
-  while (!later(*seen_until_ + kStillTime + kCalm, t)) {
-    const double begin = *seen_until_;
+  while (!later(present(seen_until_) + kStillTime + kCalm, t)) {
+    const double begin = present(seen_until_);
     seen_until_ = begin + kStillTime;
     variance_ += squared(kDrift) * kStillTime;
     const auto turned = angle(begin, begin + kStillTime);
