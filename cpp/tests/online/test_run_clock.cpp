@@ -24,6 +24,8 @@ TEST_CASE("what begins at zero is counted as it is") {
   RunClock clock;
   clock.start_at(0.05);
   CHECK(clock.counted(0.05) == 0.05);
+  clock.start_at(-12.053);
+  CHECK(clock.stamp(clock.counted(0.001)) == 0.001);
 }
 
 }  // namespace

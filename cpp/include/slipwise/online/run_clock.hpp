@@ -6,12 +6,12 @@
 
 namespace slipwise {
 
-/// Counts from a multiple of 2^16 s (18 h) before the first stamp: what is measured later is counted, and handed back,
-/// exactly, and streams that arrive in another order are counted from the same.
+/// Counts from the multiple of 2^16 s (18 h) next to the first stamp towards 0: what is measured later is counted, and
+/// handed back, exactly, and streams that arrive in another order are counted from the same.
 class RunClock {
  public:
   /// The first stamp [s].
-  void start_at(double stamp) { origin_ = kStep * std::floor(stamp / kStep); }
+  void start_at(double stamp) { origin_ = kStep * std::trunc(stamp / kStep); }
   double counted(double stamp) const { return stamp - origin_; }
   double stamp(double counted) const { return origin_ + counted; }
 
