@@ -72,11 +72,13 @@ VEHICLES = {
 def test_on_real_logs_the_hour_the_frame_and_the_order_change_nothing(
     real_log_dir: Path, tmp_path: Path
 ) -> None:
-    """Half an hour of learning; two logs do not hold it yet from commands (0.03 and 0.4 sigma)."""
+    """The shortest logs; all with SLIPWISE_ALL_LOGS=1: two fail from commands (by 0.03 and 0.4 sigma)."""
+    tables = sorted(real_log_dir.rglob("*.csv.gz"), key=lambda path: path.stat().st_size)
+    vehicles = sorted((real_log_dir.parent / "vehicles").glob("*.csv.gz"))
     if os.environ.get("SLIPWISE_ALL_LOGS") != "1":
-        pytest.skip("takes half an hour: SLIPWISE_ALL_LOGS=1 asks for it")
-    logs = [(path, LogOptions()) for path in sorted(real_log_dir.rglob("*.csv.gz"))]
-    for path in sorted((real_log_dir.parent / "vehicles").glob("*.csv.gz")):
+        tables, vehicles = tables[:3], []
+    logs = [(path, LogOptions()) for path in tables]
+    for path in vehicles:
         logs += [(path, each) for name, each in VEHICLES.items() if path.name.startswith(name)]
     failures = [
         f"{path.parent.name}/{path.name}, {each}"
