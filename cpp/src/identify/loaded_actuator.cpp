@@ -85,8 +85,10 @@ void ActuatorFilter::check_loaded(const ActuatorFilter& made) const {
             "a bank of actuators has other candidates");
     for (std::size_t k = 0; k < bank.candidates.size(); ++k) {
       bank.candidates[k].check_loaded(other.candidates[k]);
-      if (k < bank.refits.size() && bank.refits[k]) {
-        bank.refits[k]->check_loaded(other.candidates[k], past_.size());
+      if (k < bank.refits.size()) {
+        if (const auto& refit = bank.refits[k]) {
+          refit->check_loaded(other.candidates[k], past_.size());
+        }
       }
     }
   }

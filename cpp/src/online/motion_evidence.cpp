@@ -60,7 +60,7 @@ void MotionEvidence::compare_gyro(double t, const InputBuffer& commands, const I
     } else if (end > t || !later(yaw_rates_.back().t, end)) {
       break;
     } else {
-      compare_second(wheels.empty() || later(wheels.first(), *second_) ? commands : wheels);
+      compare_second(wheels.empty() || later(wheels.first(), *second_) ? commands : wheels, *second_);
       second_ = end;
     }
   }
@@ -70,9 +70,7 @@ void MotionEvidence::compare_gyro(double t, const InputBuffer& commands, const I
   }
 }
 
-/// Adds the second that begins at `second_`.
-void MotionEvidence::compare_second(const InputBuffer& inputs) {
-  const double start = *second_;
+void MotionEvidence::compare_second(const InputBuffer& inputs, double start) {
   const HeldMotion held = inputs.held_motion(start, start + kSecond);
   if (std::abs(held.rotation) <= kTurning * kSecond || held.known <= kKnownPart * kSecond + kSameStamp) {
     return;

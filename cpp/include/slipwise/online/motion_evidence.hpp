@@ -70,7 +70,8 @@ class MotionEvidence {
   }
 
  private:
-  void compare_second(const InputBuffer& inputs);
+  /// Adds the second that begins at `start`, in `inputs`.
+  void compare_second(const InputBuffer& inputs, double start);
   double turn_until(double t) const;
 
   NumberedRun run_;
