@@ -54,7 +54,7 @@ def _sweep(folder: Path) -> None:
 def locked(path: Path) -> Iterator[None]:
     """Create the file and hold a lock on it, which the system lifts when this process ends, however it does.
 
-    It is locked before it gets its name: nobody ever sees it without its lock. A file system without locks
+    It is locked before it gets its name: it is never seen without its lock. A file system without locks
     gives none.
 
     Raises:

@@ -166,7 +166,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
 
 
 def _on_stretches(model: Model, slip: SlipAhead) -> _core.MotionPosterior:
-    """Return what is known of the robot, and how large the noise may be on any stretch ahead."""
+    """Return the robot's state at the start, and how large the noise may be on any stretch ahead."""
     known = model.posterior
     return _core.MotionPosterior(
         known.model, known.estimate, known.prior_std, known.noise, slip.variance_scale
@@ -190,10 +190,10 @@ def asked_twists(
     model: Model, inputs: Inputs, begin: float | None = None, initial: tuple[float, float] | None = None
 ) -> _core.InputHistory:
     """Inputs as twists; those of a car commanded by throttle and steering go through its curves."""
-    car, told = model.car, inputs.car
+    car, known = model.car, inputs.car
     if car is None:
         return _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
-    throttle, steering = (inputs.v, inputs.omega) if told is None else (told.throttle, told.steering)
+    throttle, steering = (inputs.v, inputs.omega) if known is None else (known.throttle, known.steering)
     commands = _core.InputHistory(inputs.t, throttle, np.zeros_like(throttle), steering)
     measured = None if begin is None or initial is None else (begin, initial[0])
     return car.twists(commands, float(inputs.t[0]), measured)

@@ -50,7 +50,7 @@ class _Drive:
 
 
 def known_run(robot: KnownRobot, commands: Inputs, span: Pair, *, random: np.random.Generator) -> Run:
-    """Drive by the commands, which are zero before the first, and record what is measured within `span`.
+    """Drive by the commands, which are zero before the first, and record the measurements within `span`.
 
     Times [s] are those of the commands. A wheel speed is the mean until the next: holding it is exact.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated robot that is told its commands while it drives, for controllers."""
+"""A simulated robot that takes its commands while it drives, for controllers."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ def surface_figure(fixture: Fixture, regression: Regression) -> ThesisFigure:
 
 
 def other_terrain_figure(fixture: Fixture) -> ThesisFigure:
-    """Draw the angular slip rate by all three on the terrain that nobody here wrote."""
+    """Draw the angular slip rate by all three on the terrain of another author."""
     examples = simulated_examples(fixture, "contact-friction")
     surfaces = [fitted(partial(regression.make, TERMS), examples.whole) for regression in REGRESSIONS]
     means = [surface.predict(examples.whole.v, examples.whole.omega).mean[:, 2] for surface in surfaces]

@@ -79,5 +79,5 @@ class CausalPass(Generic[UpdateT]):
         return self._learner.posterior()
 
     def finish(self) -> Posterior:
-        """Learn what is left and return the last posterior."""
+        """Learn the remaining segments and return the last posterior."""
         return self.posterior(len(self._windows if self._passed is None else self._passed))

@@ -14,7 +14,7 @@ STRAIGHT_SIDE_SLIP = 0.03  # rad, standard deviation of a side slip that positio
 
 # What other terms would say, curves, drag of cornering and understeer say already.
 _CAR_BASES = ("none", "edd-2")
-_CAR_LAG, _CAR_DELAY = 0.03, 0.05  # s; medians of what is left behind the lags of a car
+_CAR_LAG, _CAR_DELAY = 0.03, 0.05  # s; medians of the rest behind the lags of a car
 
 
 def core_settings(  # noqa: PLR0913 - what comes is said by its sort
@@ -37,7 +37,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         remember: keep surfaces that were driven on, and recall them.
         positions: headings are courses of positions, which do not tell a side slip that is always the same.
         car: what is taken of a car whose commands are throttle and steering, before it drives.
-        sources: names of the sources of poses, where sources or fixes are told apart; the first's first.
+        sources: names of the sources of poses, where sources or fixes are distinguished; the first's first.
         gyro_alone: no poses come, and turns of a gyro alone are learned from.
 
     Raises:
@@ -84,7 +84,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
 
 
 def _behind_curves(hypotheses: _core.HypothesisSettings, settings: Settings) -> None:
-    """Expect little slip and lag where a car's curves hold most of both; bases that somebody chose stay."""
+    """Expect little slip and lag where a car's curves hold most of both; named bases stay."""
     if settings.basis == "auto" and set(AUTO_BASES) <= set(settings.auto.bases):
         hypotheses.bases = [basis for basis in hypotheses.bases if basis.name in _CAR_BASES]
     _change_prior(hypotheses, time_constant=_CAR_LAG, delay=_CAR_DELAY)

@@ -22,7 +22,7 @@ class EstimatorRun:
     """Causal posteriors on the way, and what is kept in the end."""
 
     posterior: Callable[[int], Posterior]  # known causally after so many windows, which never decrease
-    kept: Callable[[], Posterior]  # learns what is left and returns what goes into a model
+    kept: Callable[[], Posterior]  # learns the rest and returns what goes into a model
     history: Callable[[], History | None]  # where it was recorded
     bases: tuple[str, ...]
     dynamics: bool

@@ -12,7 +12,7 @@ from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 
 
 def force_found(posterior: Posterior, settings: Settings) -> tuple[ForcePart, ...]:
-    """Return what a posterior knows of each part of the force; nothing where none was to be learned."""
+    """Return what a posterior knows of each part of the force; an empty tuple if none was to be learned."""
     frame = settings.body_force.frame
     if frame == "none":
         return ()

@@ -28,7 +28,7 @@ class Confounded:
 
 
 def not_identifiable(posterior: Posterior) -> tuple[str, ...]:
-    """Return the parameters of which the drive told little more than the prior did."""
+    """Return the parameters that the drive determines little better than the prior."""
     ratios = posterior.variance_ratio.tolist()
     return tuple(
         info.name

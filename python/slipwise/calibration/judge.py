@@ -17,7 +17,7 @@ from slipwise.calibration.verdict import Identified, LogFacts, give_verdict, ide
 
 @dataclass(frozen=True, eq=False)
 class ToJudge:
-    """Predictions beside the kinematic baseline's, and what is known of the model that made them."""
+    """Predictions beside the kinematic baseline's, and facts about the model that made them."""
 
     predictions: Predictions
     baseline: Predictions  # of the same segments
@@ -36,7 +36,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class Sensors:
-    """What was measured beside what is learned from."""
+    """Measurements that the learner does not use."""
 
     wheels: bool  # wheel speeds, beside the commands
     wheels_advice: str  # what would give them, where the log could have them

@@ -25,7 +25,7 @@ _UNKNOWN: Ratio = (np.nan, np.nan, np.nan)
 
 @dataclass(frozen=True)
 class Still:
-    """The rival that stands still, at the horizon where the model does best beside it."""
+    """The prediction "stands still", at the horizon where the model does best beside it."""
 
     horizon: float  # s
     error: float  # the model's mean error: m, or rad where turns alone were measured
@@ -113,12 +113,12 @@ def judgement_of(
     )
     if held_out.segments == 0:
         return Judgement(held_out, _UNKNOWN, _UNKNOWN, None)
-    rivals = [_still(each, turns=held_out.turns_alone) for each in (*horizons, learned)]
+    still = [_still(each, turns=held_out.turns_alone) for each in (*horizons, learned)]
     return Judgement(
         held_out,
         ratio_of_means(learned.position_error[half], baseline.position_error[half]),
         ratio_of_means(learned.heading_error[half], baseline.heading_error[half]),
-        max((rival for rival in rivals if rival is not None), key=lambda r: r.explained, default=None),
+        max((each for each in still if each is not None), key=lambda s: s.explained, default=None),
         consistency_of(learned),
     )
 

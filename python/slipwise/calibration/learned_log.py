@@ -200,7 +200,7 @@ def pushed(
     Args:
         learner: what is given the measurements.
         drive: the runs, in the order of time.
-        cues: of each run, when somebody said what the surface is; the learner is told at that time.
+        cues: of each run, when a label names the surface; the learner receives it at that time.
     """
     sources = source_names(run.run for run in drive) if learner.sources else ()
     for place, run in enumerate(drive):

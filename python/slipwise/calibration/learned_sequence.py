@@ -110,7 +110,7 @@ def learn_sequence(
         drives: the runs of each log, in the order of time.
         settings: what to learn and how.
         horizons: of the predictions [s].
-        options: what is known at the start, labels, and what is wanted.
+        options: prior, labels and wanted results.
         progress: called with the fraction done, 0 to 1.
 
     Raises:
@@ -169,7 +169,7 @@ def _begun(
 def _begin_drive(
     learner: _core.MotionLearner, drive: tuple[PreparedRun, ...], place: int, options: SequenceOptions
 ) -> Sequence[tuple[Cue, ...]]:
-    """Begin a log; returns what is said of the surface in each run while it is driven."""
+    """Begin a log; return the labels of the surface in each run."""
     if options.terrain is not None:
         learner.start_drive("", date_of(drive))
         return [cues_of(options.terrain, run) for run in drive]

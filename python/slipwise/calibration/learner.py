@@ -20,7 +20,7 @@ JOINT, CASCADED, LIMITS, DIRECT, BASELINE = range(len(STRUCTURES))
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """What is known of a model's parameters at one time."""
+    """The posterior of a model's parameters at one time."""
 
     motion: _core.MotionModel  # whose parameters these are
     mean: Floats  # [P]

@@ -21,11 +21,11 @@ LEAST_DEAD_BAND = 1e-3  # m/s or rad/s; no drive's is less, so slower commands n
 
 
 def advice_on_limits(search: _core.LimitSearch | None, *, kept: bool, wheels_logged: bool) -> tuple[str, ...]:
-    """Return what there is to say of a search for limits: nothing where there was none."""
+    """Return what there is to say of a search for limits: an empty tuple if there was none."""
     if search is None:
         return ()
-    doubts = () if kept else doubted_limits(search, wheels_logged=wheels_logged)
-    return (*doubts, *limits_advice(search))
+    warnings = () if kept else doubted_limits(search, wheels_logged=wheels_logged)
+    return (*warnings, *limits_advice(search))
 
 
 def limits_advice(search: _core.LimitSearch) -> tuple[str, ...]:

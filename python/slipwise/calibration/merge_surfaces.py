@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The surfaces of two model files of one robot in one: what cannot be told apart becomes one."""
+"""The surfaces of two model files of one robot in one: surfaces that cannot be distinguished become one."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class MergedSurface:
 def merge_surfaces(first: Model, second: Model) -> tuple[Model, tuple[MergedSurface, ...]]:
     """Return the first model with the surfaces of both, and what became of those of the second.
 
-    Surfaces whose predictive densities cannot be told apart are multiplied, the prior that both began from
+    Surfaces whose predictive densities cannot be distinguished are multiplied, the prior that both began from
     counting once (derivations/surfaces.md). The robot, and the surface that is driven on, are those of
     the first model.
 

@@ -70,7 +70,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             positions: positions will come (`push_position`), and no poses.
             attitude: roll and pitch will be pushed: `auto` tries terms of gravity too, as `calibrate` does of
                 a log that has them. Learning takes about half as long again.
-            sources: names of the sources of poses, where there are several or fixes are told apart. The first
+            sources: names of the sources of poses, if there are several or fixes differ. The first
                 is the one that predictions start from and are judged by; one may be enough.
             gyro_alone: no poses will come: turns of a gyro (`push_gyro`) are all that is learned from.
 
@@ -150,9 +150,9 @@ class MotionLearner(Measurements, RememberedSurfaces):
 
         Measured poses correct what the learned motion predicts since the last of them: slip, lag and delay as
         they are known, with their uncertainty. A pose that comes late takes effect at its stamp; lone poses
-        far away move nothing. It changes nothing of what is learned, and it is not saved: a learner that was
+        far away move nothing. It does not change the learned model, and it is not saved: a learner that was
         loaded begins again with the next pose, since the robot may have been moved meanwhile. Call it at
-        least every few seconds: after ten seconds of poses that nobody asked about, it begins again within
+        least every few seconds: after ten seconds of poses without a call, it begins again within
         them.
         """
         found = self._core.odometry()
@@ -164,7 +164,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
         It is stuck where the poses of the last 0.6 s are explained by a robot that moves by a fifth of that
         at most, far better than by one that moves as expected, and this for 0.2 s. Nothing is said where less
         than 20 s were learned, inputs are not known or have just ended, or too little motion is expected
-        beside the noise of the poses. It changes nothing of what is learned, and it is not saved. Call it
+        beside the noise of the poses. It does not change the learned model, and it is not saved. Call it
         several times a second.
         """
         state = self._core.motion_monitor()
@@ -186,7 +186,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
 
         Args:
             name: of the run.
-            label: name of the surface, where somebody thinks to know it; a wrong one is overruled.
+            label: name of the surface, if a label names it; a wrong one is overruled.
             date: of the drive, for the table of surfaces.
         """
         self._name_run(name)
@@ -216,14 +216,14 @@ class MotionLearner(Measurements, RememberedSurfaces):
 
     @property
     def sources(self) -> tuple[LearnedSource, ...]:
-        """What is known of each source of poses, where there are several."""
+        """Estimates of each pose source, where there are several."""
         if not self._sources:
             return ()
         return learned_sources(self._core.completed(), tuple(self._sources))
 
     @property
     def settings(self) -> Settings:
-        """What is learned and how."""
+        """What the learner learns and how."""
         return self._settings
 
     def judged_model(self, *, limits: bool = True, log: Log | None = None) -> tuple[Model, Judgement]:

@@ -25,7 +25,7 @@ def new_robot_knowledge(prior: KnownFleet, settings: Settings | None = None) -> 
 
     Args:
         prior: of the robot's type, of commands.
-        settings: what is learned; the bases that the fleet was learned with.
+        settings: of the learning, with the bases that the fleet was learned with.
 
     Raises:
         ModelError: the prior is of wheel speeds, of other bases, or of too few robots.

@@ -58,7 +58,7 @@ def predictions_of(predictor: Predictor, learned: WindowSet, targets: WindowSet)
 def predict_all(
     predictor: Predictor, learned: WindowSet, sets: Sequence[WindowSet]
 ) -> tuple[Predictions, ...]:
-    """Predict the targets of several horizons in one run over what is learned, and keep no posterior."""
+    """Predict the targets of several horizons in one run over the learned model, and keep no posterior."""
     drafts = [_draft(learned, targets) for targets in sets]
     moments = [c for draft in drafts for c in (draft.counts, draft.in_sample_counts)]
     kind = np.repeat(np.arange(len(moments)), [len(counts) for counts in moments])
@@ -114,7 +114,7 @@ class ProposedPoses:
     """What a method proposes for the windows of a set, [N] each."""
 
     pose: Floats  # [N, 3] T_start_end
-    covariance: Floats  # [N, 3, 3] without what is learned from earlier errors
+    covariance: Floats  # [N, 3, 3] without the correction by earlier errors
     in_sample: Floats  # [N, 3] pose after learning the window
     structure: Ints  # of STRUCTURES
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a learner is told of the surface under the robot, and what it says of those that it remembers."""
+"""Labels of the surface under the robot, and the surfaces that a learner remembers."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class RememberedSurfaces:
 
         Args:
             probability: of each class that the sensor knows, were the terrain one of them; adds up to 1.
-            unknown: that it is none of them, were that as likely as not beforehand.
+            unknown: that it is none of them, with even prior odds.
 
         Raises:
             SettingsError: these are no probabilities.

@@ -58,7 +58,7 @@ class History:
     bases: tuple[str, ...]  # [B] bases averaged, one where the basis is fixed
     basis_weight: Floats  # [W, B] their weights after the window
     change: Floats  # [W] log odds, before the window was learned, that the terrain had changed; 0 or more
-    alarm: NDArray[np.bool_]  # [W] whether that was taken for a change of terrain
+    alarm: NDArray[np.bool_]  # [W] whether that counted as a change of terrain
     structures: tuple[str, ...] = ()  # [S] ways to learn from commands, where more than one was tried
     structure_weight: Floats | None = None  # [W, S] their weights after the window
     surfaces: SurfaceCourse | None = None  # where surfaces are remembered

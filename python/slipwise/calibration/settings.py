@@ -35,7 +35,7 @@ Metres = Annotated[float, Field(ge=-FARTHEST_SENSOR, le=FARTHEST_SENSOR)]
 AUTO_BASES = tuple(basis.name for basis in _core.HypothesisSettings().bases)
 AVERAGE = "average"  # the estimator that weighs bases, each learned by a causal filter
 ESTIMATORS = (AVERAGE, *_core.estimator_names())
-SEGMENT_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip
+SEGMENT_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to differ from slip
 
 _PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
 _RULES, _DRIFT, _FORCE = WindowRules(), _core.DriftSettings(), _core.BodyForceSettings()
@@ -191,7 +191,7 @@ class SensorExtrinsicsTable(_Section):
 
 
 class Settings(_Section):
-    """Everything that changes what is learned."""
+    """Everything that changes the learned model."""
 
     basis: str = "auto"  # "auto", "custom" (terms below) or a named basis
     estimator: Annotated[str, AfterValidator(_known_estimator)] = AVERAGE
@@ -247,7 +247,7 @@ class Settings(_Section):
     def average_settings(self) -> _core.ModelAverageSettings:
         """Return the core's settings of model averaging, and of finding a change of terrain.
 
-        Where a force is learned, what changes at once is taken for it: no terrain is looked for then.
+        Where a force is learned, sudden changes count as force, and no terrain is looked for.
         """
         settings, change = _core.ModelAverageSettings(), _core.ChangeSettings()
         change.detect = self.change.detect and not self.body_force.learned

@@ -24,7 +24,7 @@ def shortage_advice(log: Log, input_name: str, shortest: WindowSet, settings: Se
     """Say what to do about too few segments.
 
     Args:
-        log: what is learned from.
+        log: the data to learn from.
         input_name: the input that is learned from.
         shortest: the segments of the shortest horizon that is judged.
         settings: those of learning.

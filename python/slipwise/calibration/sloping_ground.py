@@ -41,7 +41,7 @@ def has_known_force(log: Log) -> bool:
     runs = [run for run in log.runs if run.poses.force_x is not None or run.poses.force_y is not None]
     if runs and has_attitude(log):
         raise LogError(
-            "the log has both roll and pitch and a known force, and only one of them can be taken for a push",
+            "the log has both roll and pitch and a known force, and only one of them can explain a push",
             where=runs[0].name,
             advice="leave out the columns roll and pitch, and add gravity to force_x and force_y",
         )

@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class LearnedSource:
-    """What is known of a source of poses; the first's lateness and place are parameters of the model."""
+    """Estimates of a pose source; the first's lateness and place are parameters of the model."""
 
     name: str
     late: float  # s by which its stamps are late, beside those of the inputs
@@ -47,7 +47,7 @@ class LearnedSource:
 
 
 def learned_sources(learner: _core.MotionLearner, names: Sequence[str]) -> tuple[LearnedSource, ...]:
-    """Return what a learner knows of its sources, of these names; nothing where it tells none apart."""
+    """Return what a learner knows of its sources, by these names; an empty tuple if it has one source."""
     found = []
     for i, (name, source) in enumerate(zip(names, learner.sources, strict=bool(names))):
         late_std, *sensor_std = np.sqrt(np.diag(source.calibration.covariance)).tolist()

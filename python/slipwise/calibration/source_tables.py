@@ -50,7 +50,7 @@ class PoseSourceTable(BaseModel):
 def core_sources(
     names: Sequence[str], tables: Sequence[PoseSourceTable], clock_std: float
 ) -> list[_core.SourceSettings]:
-    """Return what is said of each source by name; the first is the model's own.
+    """Return the settings of each source by name; the first is the model's own.
 
     Raises:
         SettingsError: settings name a source that is not there, or the first one.

@@ -32,12 +32,12 @@ def labels_of(run: Run) -> tuple[tuple[float, str], ...]:
 
 
 def label_at_start(cues: Sequence[tuple[float, str]], run: Run) -> str:
-    """Return the label that a run begins with; nothing where the first one comes later."""
+    """Return the label that a run begins with; an empty string if the first one comes later."""
     return cues[0][1] if cues and cues[0][0] <= run.span[0] else ""
 
 
 def date_of(drive: Sequence[PreparedRun]) -> str:
-    """Return the day (UTC) on which the drive began; nothing where stamps do not count from 1970."""
+    """Return the day (UTC) on which the drive began; an empty string if stamps do not count from 1970."""
     start = drive[0].run.span[0]
     return datetime.fromtimestamp(start, UTC).date().isoformat() if start > _EPOCH else ""
 

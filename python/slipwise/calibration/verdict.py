@@ -41,7 +41,7 @@ FEW = 20  # held-out segments; a gain that shows in fewer may be chance
 
 @dataclass(frozen=True)
 class Identified:
-    """What is known of a model's parameters."""
+    """Facts about a model's parameters."""
 
     parameters: int
     not_identifiable: tuple[str, ...]

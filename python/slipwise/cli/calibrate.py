@@ -161,7 +161,7 @@ def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dic
 
 
 def _memory_part(given: Opened, learned: LearnedLogs) -> dict[str, Any]:
-    """Return what became of surfaces; nothing where there was no memory."""
+    """Return what became of surfaces; empty if there was no memory."""
     from dataclasses import asdict
 
     from slipwise.cli.document import memory_part

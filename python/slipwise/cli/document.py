@@ -38,7 +38,7 @@ def log_part(log: Log, left_out: Sequence[LeftOut]) -> dict[str, Any]:
 
 
 def surfaces_part(model: Model) -> list[dict[str, Any]]:
-    """Return what is known of each surface that a model remembers, without what is learned of its slip."""
+    """Return facts about each surface that a model remembers, without its slip."""
     learned = {"slip", "covariance", "memory"}
     return [surface.model_dump(exclude=learned) for surface in model.content.surfaces]
 

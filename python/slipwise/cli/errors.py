@@ -81,7 +81,7 @@ def printable(text: str) -> str:
 
 
 def silence_stdout() -> None:
-    """Stop writing where nobody reads any more, as in `slipwise ... | head`."""
+    """Stop writing when the reader is gone, as in `slipwise ... | head`."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, sys.stdout.fileno())
     os.close(null)

@@ -25,7 +25,7 @@ class MemoryQuestion:
     log_options: LogOptions
     input: str | None
     options: EvaluationOptions
-    begin: SequenceOptions  # what is known before, and labels
+    begin: SequenceOptions  # prior and labels
     predictions: Path | None  # file to write
     report: Path | None = None
 

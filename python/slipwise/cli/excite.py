@@ -23,7 +23,7 @@ def excite(
         str | None, optional("NAME", "Limits and size of husky, jackal, warthog or land-tamer.")
     ] = None,
     model: Annotated[
-        Path | None, optional("FILE", "What is known already; the learner's prior by default.")
+        Path | None, optional("FILE", "Model to start from; the learner's prior by default.")
     ] = None,
     prior: Annotated[
         Path | None, optional("FILE", "What a fleet knows of its next robot, by `slipwise fleet`.")
@@ -98,7 +98,7 @@ def _vehicle(name: str | None) -> Vehicle | None:
 def _known(
     files: tuple[Path | None, Path | None], vehicle: Vehicle | None, given: dict[str, float | None]
 ) -> tuple[CommandSpace, Knowledge]:
-    """Return the limits of the commands and what is known before the drive, of a model or a fleet's prior."""
+    """Return the limits of the commands and the start, of a model or a fleet's prior."""
     from slipwise.calibration.from_prior import KnownFleet
     from slipwise.calibration.new_robot import new_robot_knowledge
     from slipwise.errors import SettingsError

@@ -44,7 +44,7 @@ def fleet(
     """Learn every log, keep a row per log and parameter, and say what the fleet knows and what stands out.
 
     DIR/rows is a Parquet data set by vehicle and month; DIR/fleet.html shows vehicles side by side, drift and
-    odd ones; DIR/fleet.yaml says what is known of the next robot, for `slipwise calibrate --prior`. A second
+    odd ones; DIR/fleet.yaml is the prior of the next robot, for `slipwise calibrate --prior`. A second
     run learns only what is new: other bytes or other settings. Ctrl-C loses the logs at work, no more. Exit
     code 1: no log was usable.
 

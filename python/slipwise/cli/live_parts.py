@@ -32,7 +32,7 @@ class Robot:
     run: str | None  # name of the run that begins; None: the transport says
     log: Log | None = None  # that is replayed
     positions: bool = False  # poses come without a heading
-    sources: tuple[str, ...] = ()  # of poses, where they are told apart
+    sources: tuple[str, ...] = ()  # of poses, where they are distinguished
     gyro_alone: bool = False  # no poses come, and turns of a gyro are learned from
 
 
@@ -87,7 +87,7 @@ def live_settings(settings: Settings, given: Mapping[str, Any]) -> Settings:
 def with_memory(settings: Settings, *, chosen: bool) -> Settings:
     """Return the settings with which a memory of surfaces goes on.
 
-    Where `chosen` says that nobody chose settings, they are those of the model that is begun with. A start
+    Without chosen settings (`chosen`), they are those of the model that is begun with. A start
     model that remembers surfaces is begun with, too.
 
     Raises:

@@ -30,7 +30,7 @@ from slipwise.cli.terrain import terrain
 from slipwise.plugins import COMMANDS, added, refuse_missing
 
 DEBUG = "--debug"
-#: Options that have another name since version 0.2; scripts that use the older one are told, and go on.
+#: Options that have another name since version 0.2; scripts that use the older one get a note, and go on.
 RENAMED = {
     "--track": "--wheel-separation",
     "--vendor-track-multiplier": "--vendor-wheel-separation-multiplier",

@@ -12,7 +12,7 @@ Update = Callable[[str, float], None]
 
 @contextlib.contextmanager
 def progress_bar(first: str) -> Iterator[Update]:
-    """Yield a function that is told what is being done and which fraction of the whole is done, 0 to 1."""
+    """Yield a function that is called with the current step and the fraction done, 0 to 1."""
     if not sys.stderr.isatty():
         yield lambda _what, _share: None
         return

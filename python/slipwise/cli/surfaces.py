@@ -92,7 +92,7 @@ def rename(
 def merge(model: ModelFile, second: Second, output: Output, json: Json = None) -> int:
     """Join the surfaces of two model files of one robot, input and basis.
 
-    Surfaces that cannot be told apart become one, and both memories count. Others keep their names; one
+    Surfaces that cannot be distinguished become one, and both memories count. Others keep their names; one
     whose name is taken gets a number. The robot's lags and delays are those of the first file.
 
     \b
@@ -116,7 +116,7 @@ def merge(model: ModelFile, second: Second, output: Output, json: Json = None) -
         _document("surfaces merge", learned) | {"files": files, "merged": [asdict(each) for each in done]}
     )
     rows = [
-        (each.name, each.became or "dropped", "not told apart from it" if each.merged else "")
+        (each.name, each.became or "dropped", "not distinguished from it" if each.merged else "")
         for each in done
     ]
     out.table(f"Surfaces of {second.name}", (Column("name"), Column("is now"), Column("")), rows)

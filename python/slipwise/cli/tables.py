@@ -44,7 +44,7 @@ def show_left_out(output: Output, left_out: Sequence[LeftOut]) -> None:
 
 
 def show_alarms(output: Output, history: History) -> None:
-    """Say when the terrain seemed to change; nothing where it did not."""
+    """Say when the terrain seemed to change, if it did."""
     alarms = history.alarms()
     if not alarms:
         return
@@ -110,7 +110,7 @@ def show_parameters(output: Output, parameters: Sequence[PhysicalParameter]) -> 
 
 
 def show_confounded(output: Output, pairs: Sequence[Confounded]) -> None:
-    """Say which parameters the log can hardly tell apart; nothing where there are none."""
+    """Say which parameters the log can hardly separate, if there are any."""
     if pairs:
         shown = ", ".join(map(str, pairs[:_MOST_PAIRS]))
         more = f" and {len(pairs) - _MOST_PAIRS} more pairs" if len(pairs) > _MOST_PAIRS else ""
@@ -149,7 +149,7 @@ def show_memory_changes(output: Output, names: Sequence[str], learned: LearnedSe
         for change in log.changes:
             if change.what == "merged":
                 output.line(
-                    f"{name}: {change.other} cannot be told apart from {change.name}, and is one with it."
+                    f"{name}: {change.other} cannot be distinguished from {change.name}, and is one with it."
                 )
             elif change.what == "dropped":
                 output.line(f"{name}: {change.name} was dropped, as the least used of too many.")

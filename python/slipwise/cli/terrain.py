@@ -106,7 +106,7 @@ def classify(
     """Name the surface of each window: run, t_start, t_end, label, p_<surface>..., p_unknown.
 
     The p_<surface> add up to 1: they hold if the surface is one of those that were trained. p_unknown is the
-    probability that it is none of them, were that as likely as not beforehand. Where the log has the column
+    probability that it is none of them, with even prior odds. Where the log has the column
     `terrain`, the labels are compared with it.
 
     \b

@@ -30,7 +30,7 @@ class State:
     name: str
     unit: str = ""
     measured: float | None = None  # std of a measurement, in the unit; None: it is not measured
-    angle: bool = False  # rad; what is measured may differ by whole turns
+    angle: bool = False  # rad; measurements may differ by whole turns
     noise: float = 0.0  # std of what adds to its rate, in the unit per square root of a second
     start: float = 0.0  # at the first measurement, where it is not measured
     start_std: float = 1.0  # of that

@@ -107,7 +107,7 @@ class _Pass:
         self.course.append(np.array([drive.t[k], *known.mean, *np.sqrt(np.diag(known.covariance))]))
 
     def predict(self, k: int, target: int) -> _core.DynamicsPrediction:
-        """Predict the state at measurement `target` from what is known at `k`, under the inputs recorded."""
+        """Predict the state at measurement `target` from the estimate at `k`, under the inputs recorded."""
         drive = self._drive
         first = max(0, int(np.searchsorted(drive.input_t, drive.t[k] + 1e-9)) - 1)
         last = int(np.searchsorted(drive.input_t, drive.t[target]))

@@ -19,7 +19,7 @@ from slipwise.number_text import number_text
 
 Floats = NDArray[np.float64]
 
-LOOK_ALIKE = 0.95  # correlation from which on two parameters are not told apart
+LOOK_ALIKE = 0.95  # correlation from which on two parameters are not separated
 FAR = 2.0  # mean NIS per measurement beyond which a covariance is said not to hold
 
 
@@ -36,7 +36,7 @@ class LearnedParameter:
 
     @property
     def identified(self) -> bool:
-        """Whether the drive told more of it than the prior did."""
+        """Whether the drive determines it better than the prior."""
         return self.std**2 <= UNIDENTIFIABLE_RATIO * self.prior_std**2
 
 
@@ -117,7 +117,7 @@ class LearnedDynamics:
         if unknown:
             sentences.append(f"The drive does not determine {', '.join(unknown)}: do not use the values.")
         for first, second, correlation in self.confounded:
-            sentences.append(f"{first} and {second} can hardly be told apart ({correlation:+.2f}).")
+            sentences.append(f"{first} and {second} can hardly be distinguished ({correlation:+.2f}).")
         if self.rejected > 0.05 * self.measurements:
             share = 100.0 * self.rejected / self.measurements
             sentences.append(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rivals with slip ratios and a slip angle, learned causally by an EKF or a sliding-mode observer."""
+"""Peer methods with slip ratios and a slip angle, learned causally by an EKF or a sliding-mode observer."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ class _ActuatorLearner:
         return self._actuator.learn(inputs, segment)
 
     def posterior(self) -> Posterior:
-        """Return what is known now."""
+        """Return the present estimate."""
         state = self._actuator.state()
         return Posterior(
             motion=self._motion,

@@ -45,7 +45,7 @@ WIDER = 1.25  # times as different from the expected robot as robots are likely 
 RARE = 0.05  # of the robots at least are of each kind, where there are several
 TRIED = 6  # candidates whose paths are computed at once
 MOST_TRIED = 180  # candidates per figure
-CUT_SHORT = 1.0  # weight of what is known after five moves of a figure, beside what is known after all eight
+CUT_SHORT = 1.0  # weight of the knowledge after five moves of a figure, beside that after all eight
 
 
 @dataclass(frozen=True)
@@ -180,11 +180,11 @@ class _Search:
         commands = space.quadrant(options.levels)
         alone = [[command] for command in commands.tolist()]
         self._commands = commands[self._inside([], alone, options.room)[0]]
-        told = [self._told(knowledge, command) for command in self._commands.tolist()]
+        informed = [self._informed(knowledge, command) for command in self._commands.tolist()]
         size = len(self._prior)
-        self._told_by_four = np.array([sum(parts) for parts in told]).reshape(-1, size, size)
-        self._told_by_three = np.array([sum(parts[:3]) for parts in told]).reshape(-1, size, size)
-        self._told_by_two = np.array([sum(parts[:2]) for parts in told]).reshape(-1, size, size)
+        self._informed_by_four = np.array([sum(parts) for parts in informed]).reshape(-1, size, size)
+        self._informed_by_three = np.array([sum(parts[:3]) for parts in informed]).reshape(-1, size, size)
+        self._informed_by_two = np.array([sum(parts[:2]) for parts in informed]).reshape(-1, size, size)
 
     def drive(self, room: Floats) -> tuple[float, list[Move]]:
         """Return the score of the worst predictions and the moves of the drive found in this room [2] m."""
@@ -200,24 +200,24 @@ class _Search:
                 break
             place, figure = taken
             moves.extend(figure)
-            known = known + self._told_by_four[place].sum(axis=0)
+            known = known + self._informed_by_four[place].sum(axis=0)
             left -= len(place)
         return float(self.judge.scores(known[None])[0]), moves
 
-    def _told(self, knowledge: Knowledge, command: Sequence[float]) -> list[Floats]:
+    def _informed(self, knowledge: Knowledge, command: Sequence[float]) -> list[Floats]:
         """What each of the four moves with this command tells, from rest."""
         moves = figure_of([command], ORDERS[0], self.options.hold, self.options.pause)
         return [information(move_jacobians(knowledge, [move])[0], self.options.std) for move in moves]
 
     def _scores_of_one(self, known: Floats) -> Floats:
-        return self.judge.scores(known + self._told_by_four)
+        return self.judge.scores(known + self._informed_by_four)
 
     def _scores_of_two(self, known: Floats) -> Floats:
         """Return the scores [N, N] of figures of two commands, after five moves and after all eight."""
         count, size = len(self._commands), len(known)
-        five = known + self._told_by_three[:, None] + self._told_by_two
-        eight = known + self._told_by_four[:, None] + self._told_by_four
-        cut, whole = (self.judge.scores(told.reshape(-1, size, size)) for told in (five, eight))
+        five = known + self._informed_by_three[:, None] + self._informed_by_two
+        eight = known + self._informed_by_four[:, None] + self._informed_by_four
+        cut, whole = (self.judge.scores(after.reshape(-1, size, size)) for after in (five, eight))
         return (whole + CUT_SHORT * cut).reshape(count, count)
 
     def _first_inside(

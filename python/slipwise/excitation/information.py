@@ -68,7 +68,7 @@ def information(jacobians: Iterable[Floats], std: PoseStd) -> Floats:
 
 
 def prior_information(knowledge: Knowledge) -> Floats:
-    """Return the inverse of the covariance; what is known exactly stays known."""
+    """Return the inverse of the covariance; exact values stay exact."""
     std = np.sqrt(np.diag(knowledge.covariance))
     scale = np.where(std > 0.0, std, 1.0)
     correlation = knowledge.covariance / np.outer(scale, scale)

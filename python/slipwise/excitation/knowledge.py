@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of a robot before the drive: a learned model's posterior, or the learner's prior."""
+"""Knowledge of a robot before the drive: a learned model's posterior, or the learner's prior."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Knowledge:
     covariance: Floats  # [parameters, parameters] that a drive is to shrink
     spread: Floats  # [parameters, parameters] of the robots that may turn up, the slip disturbance included
     limits: _core.CommandLimits | None = None  # of the drive, in front of its lag
-    #: Robots that may turn up, where these are of several kinds: each kind's weight, and what is known of it.
+    #: Robots that may turn up, where these are of several kinds: each kind's weight and knowledge.
     kinds: tuple[tuple[float, Knowledge], ...] = ()
 
     @property

@@ -32,7 +32,7 @@ class Lesson:
 
 
 def lessons_of(drive: Excitation) -> tuple[Lesson, ...]:
-    """Return what is known before the drive, and after each of its moves, in the order of driving.
+    """Return the knowledge before the drive, and after each of its moves, in the order of driving.
 
     Derivatives are those of the whole drive: what a move leaves of the drive's lag is in the next.
     """
@@ -40,8 +40,8 @@ def lessons_of(drive: Excitation) -> tuple[Lesson, ...]:
     judge = WorstPrediction(prediction_jacobians(knowledge, drive.space.grid(JUDGED_LEVELS), HORIZON))
     known = prior_information(knowledge)
     result = [_lesson(None, known, judge)]
-    for move, told in zip(drive.moves, move_jacobians(knowledge, drive.moves, LEAD), strict=True):
-        known = known + information(told, std)
+    for move, jacobian in zip(drive.moves, move_jacobians(knowledge, drive.moves, LEAD), strict=True):
+        known = known + information(jacobian, std)
         result.append(_lesson(move, known, judge))
     return tuple(result)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The next few moves worth driving, of a robot that somebody drives: found in small pieces of work."""
+"""The next few moves worth driving, of a robot under way: found in small pieces of work."""
 
 from __future__ import annotations
 

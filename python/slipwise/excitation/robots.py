@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robots drawn from what is known, and how far they come under a drive that nobody corrects."""
+"""Robots drawn from the knowledge before a drive, and how far they stray on it."""
 
 from __future__ import annotations
 
@@ -70,10 +70,10 @@ def fits(box: Floats, room: Floats) -> NDArray[np.bool_]:
 
 
 def drawn_robots(knowledge: Knowledge, count: int, *, seed: int, least: float = 0.0) -> Robots:
-    """Draw robots from the spread of what is known, a normal distribution or several.
+    """Draw robots from the spread of the knowledge, a normal distribution or several.
 
     Args:
-        knowledge: what is known.
+        knowledge: mean and covariance of the parameters.
         count: robots.
         seed: of the draw.
         least: part of the robots that each kind gets at least, where there are several; rare ones are then

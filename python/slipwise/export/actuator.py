@@ -31,7 +31,7 @@ class ChannelResponse:
     held: float | None = None  # s, for which the log's inputs were held; None: the model does not say
 
     @property
-    def doubt(self) -> str:
+    def objection(self) -> str:
         """Why the lag must not be handed on; empty where it may be."""
         if self.held is None or self.mean_lag.value <= self.held:
             return ""

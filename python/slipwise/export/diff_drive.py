@@ -104,7 +104,7 @@ def _geometry(found: WheelMultipliers, options: ExportOptions, model: Model) -> 
 
 
 def _rate(options: ExportOptions, distro: str) -> tuple[float | None, list[Entry | Kept]]:
-    """Return how often odometry is published [Hz], and how the controller is told."""
+    """Return how often odometry is published [Hz], and the parameters of the controller for it."""
     if "publish_rate" not in DIFF_DRIVE.of_distro(distro):
         return options.update_rate, []
     rate = PUBLISH_RATE if options.update_rate is None else min(PUBLISH_RATE, options.update_rate)
@@ -115,11 +115,11 @@ def _covariances(model: Model, options: ExportOptions, distro: str) -> list[Entr
     drive, numbers = reference_drive(model), LearnedNumbers(model)
     at, seconds = (drive.speed, drive.yaw_rate), options.horizon
     where = f"at {drive.speed:.3g} m/s and {drive.yaw_rate:.3g} rad/s"
-    rate, told = _rate(options, distro)
+    rate, parameters = _rate(options, distro)
     twist = learned_variances(model, lambda each: slip_density(each, at, seconds) * (rate or 1.0))
     pose = learned_variances(model, lambda each: motion_covariance(each, at, seconds).diagonal())
     return [
-        *told,
+        *parameters,
         Kept((_TWIST,), _NO_RATE + _shown(twist))
         if rate is None
         else _diagonal(

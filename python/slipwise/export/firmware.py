@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameter files of PX4 and ArduPilot rovers: what is known, with unit, deviation and source."""
+"""Parameter files of PX4 and ArduPilot rovers: learned values, with unit, deviation and source."""
 
 from __future__ import annotations
 

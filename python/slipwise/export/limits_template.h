@@ -108,7 +108,7 @@ static inline slipwise_real slipwise_told_next(const slipwise_cursor *cursor) {
                                                 : SLIPWISE_R(INFINITY);
 }
 
-/* What is left of the command that is commanded, once all ramps are over. */
+/* The part of the command that remains once all ramps are over. */
 static inline slipwise_drive slipwise_goal(const slipwise_cursor *cursor) {
   slipwise_drive goal;
   goal.v = slipwise_limited(&slipwise_lanes[0], cursor->commanded.v);

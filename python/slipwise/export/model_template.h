@@ -318,7 +318,7 @@ static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwi
     int parts = 1, i;
     next = other < next ? other : next;
     next = next < until ? next : until;
-    if (lagging && moves && next > now) { /* a lag that nobody sees needs no short steps */
+    if (lagging && moves && next > now) { /* a lag without effect needs no short steps */
       parts = (int)SLIPWISE_MATH(ceil)((next - now) / SLIPWISE_LONGEST_STEP - SLIPWISE_SAME_STEP);
       parts = parts < 1 ? 1 : parts;
     }

@@ -101,8 +101,8 @@ def _delays(actuator: Actuator, numbers: LearnedNumbers, horizon: float) -> list
 
 def _delay(name: str, channel: ChannelResponse, numbers: LearnedNumbers, horizon: float) -> Entry | Kept:
     late = channel.mean_delay
-    if channel.doubt:
-        return Kept((name,), channel.doubt)
+    if channel.objection:
+        return Kept((name,), channel.objection)
     if late.value > LONGEST_DELAY * horizon:
         return Kept(
             (name,),
@@ -129,9 +129,13 @@ def _limits(
         "ax_min": (measured.braking(*v), -1.0, "m/s^2"),
         "az_max": (measured.yaw_acceleration(*omega), 1.0, "rad/s^2"),
     }
-    doubts = {"ax_max": actuator.v.doubt, "ax_min": actuator.v.doubt, "az_max": actuator.omega.doubt}
+    objections = {
+        "ax_max": actuator.v.objection,
+        "ax_min": actuator.v.objection,
+        "az_max": actuator.omega.objection,
+    }
     return [
-        Kept((name,), doubts.get(name) or limit)
+        Kept((name,), objections.get(name) or limit)
         if isinstance(limit, str)
         else stated((name,), limit.number * sign, f"[{unit}] {limit.source}", numbers)
         for name, (limit, sign, unit) in found.items()
@@ -145,7 +149,7 @@ def _ramps(model: Model, actuator: Actuator, numbers: LearnedNumbers) -> list[li
     for channel, name in ((actuator.v, "speed"), (actuator.omega, "yaw_rate")):
         late = channel.mean_delay
         fastest = 0.0 if body is None else max(map(abs, getattr(body, name)))
-        if channel.doubt or not late.value > 0.0 or not fastest > 0.0:
+        if channel.objection or not late.value > 0.0 or not fastest > 0.0:
             ramps.append([])
             continue
         source = (

@@ -102,7 +102,7 @@ class _Axis:
 def _axis(channel: ChannelResponse, numbers: LearnedNumbers) -> _Axis:
     """Return the gain 1/lag, by which the filter multiplies the missing speed."""
     lag = channel.mean_lag
-    why = channel.doubt or numbers.objection(lag)
+    why = channel.objection or numbers.objection(lag)
     if why:
         return _Axis(0.0, why)
     quick = lag.value * FREQUENCY <= 1.0

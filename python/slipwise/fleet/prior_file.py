@@ -22,7 +22,7 @@ def write_prior(
     *,
     vehicle_type: str = "",
 ) -> Path:
-    """Write what is known of a robot of this fleet, and what its learning begins with; return the path.
+    """Write the prior of a robot of this fleet; return the path.
 
     Parameters of a single vehicle are left out: one robot says nothing of the next.
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-FEWEST = 6  # logs, below which a walk cannot be told from scatter
+FEWEST = 6  # logs, below which a walk cannot be distinguished from scatter
 _STEPS = 41  # of the grid in each of the two variances, over eight decades
 _DECADES = (-5.0, 3.0)  # of a variance, in units of the smallest measured one
 

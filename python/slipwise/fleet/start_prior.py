@@ -57,15 +57,15 @@ def _prior(input_name: str, kept: str, same: Sequence[KnownLog]) -> StartPrior |
     chosen = [(vehicle, known.structures[kept]) for vehicle, known in same if kept in known.structures]
     robot = _robot([(vehicle, known) for vehicle, known in chosen if known.robot is not None])
     bases = {name: _basis(name, chosen) for name in sorted({n for _, known in chosen for n in known.bases})}
-    told = {name: prior for name, prior in bases.items() if prior is not None}
-    if robot is None or not told:
+    present = {name: prior for name, prior in bases.items() if prior is not None}
+    if robot is None or not present:
         return None
-    total = sum(prior.weight for prior in told.values()) or 1.0
+    total = sum(prior.weight for prior in present.values()) or 1.0
     return StartPrior(
         input=input_name,
         structure=kept,
         speeds=np.exp(np.mean(np.log([known.speeds for _, known in chosen]), axis=0)).tolist(),
-        bases={name: p.model_copy(update={"weight": p.weight / total}) for name, p in told.items()},
+        bases={name: p.model_copy(update={"weight": p.weight / total}) for name, p in present.items()},
         robot=robot,
     )
 

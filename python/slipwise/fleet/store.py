@@ -221,7 +221,7 @@ def _unusable(path: Path) -> dict[str, Any]:
     if not isinstance(found, dict) or not all(
         isinstance(found.get(name), str) for name in ("log", "vehicle", "failure")
     ):
-        raise ValueError("not what is said of a log")
+        raise ValueError("not the record of a log")
     return found
 
 

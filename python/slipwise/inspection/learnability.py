@@ -64,7 +64,7 @@ def learnability_of(
     Args:
         log: what `open_log` returned.
         input_name: "command" or "wheel".
-        settings: what is learned and how.
+        settings: of the learner.
         kept: gets what was learned, by input, with the predictions and limits that a model needs.
     """
     found = contradictions(

@@ -37,7 +37,7 @@ def next_drive(
     Args:
         log: what `open_log` returned.
         options: the area, the time and the robot's size.
-        settings: what is learned and how.
+        settings: of the learner.
         progress: called with the fraction done, 0 to 1.
         kept: what `inspect_log` learned of the log with these settings, where it kept that; it is learned
             here otherwise.

@@ -50,7 +50,7 @@ def schema_of(table: Table) -> dict[str, Any]:
 
 
 def check_strictly(path: Path) -> tuple[Departure, ...]:
-    """Return all that departs from the format; nothing where a table keeps to it.
+    """Return all that departs from the format; an empty tuple if a table keeps to it.
 
     Raises:
         LogError: there is no such file, or it is no Parquet file at all.

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Learning while the robot drives: what arrives, what is learned of it, and what others get."""
+"""Learning while the robot drives: samples in, the learner, results out."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The model that other programs have: it follows what is learned, clipped and rate-limited."""
+"""The model that other programs have: it follows the learned model, clipped and rate-limited."""
 
 from __future__ import annotations
 
@@ -60,19 +60,19 @@ class AppliedModel:
             self.values[name] = now + min(max(wanted - now, -most), most)
 
     def jump(self, model: Model, validity: Callable[[str], Validity]) -> None:
-        """Take what was learned at once, clipped all the same: somebody asked for it."""
+        """Take the learned model at once, clipped all the same: a request asked for it."""
         for name, wanted, _ in self._wanted(model, validity):
             self.values[name] = wanted
 
     def withdraw(self) -> bool:
-        """Go back to the start at once; return whether others had been told anything else."""
-        told = math.isfinite(self._last)
+        """Go back to the start at once; return whether others had anything else."""
+        sent = math.isfinite(self._last)
         self.values, self._handed, self._last = dict(self.start), {}, -math.inf
         self.held.clear()
-        return told
+        return sent
 
     def due(self, t: float, model: Model) -> bool:
-        """Say whether others should be told at `t` [s]: the interval is over, and something moved enough."""
+        """Say whether to send at `t` [s]: the interval is over, and something moved enough."""
         if t < self._last + self._rules.interval:
             return False
         priors = {p.name: p.prior_std for p in model.content.parameters}
@@ -83,7 +83,7 @@ class AppliedModel:
         )
 
     def handed_on(self, t: float) -> None:
-        """Remember what others were told at `t` [s]."""
+        """Remember what was sent at `t` [s]."""
         self._last, self._handed = t, dict(self.values)
 
     def model(self, learned: Model) -> Model:

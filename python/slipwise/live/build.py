@@ -52,7 +52,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
 
     Args:
         transport: brings samples and takes results.
-        input_name: "command" or "wheel": what is learned from.
+        input_name: "command" or "wheel": the input that is learned from.
         settings: those of learning, and of [live].
         watchers: see all that the node gives.
         run: name of the run that begins; None: the transport says when one does.

@@ -33,7 +33,7 @@ class CacheKey:
     input: str
     basis: str
     schema: int
-    settings: str  # hash of what changes what is learned
+    settings: str  # hash of the settings that change the learned model
 
     @classmethod
     def of(cls, vehicle: str, input_name: str, settings: Settings) -> CacheKey:
@@ -171,7 +171,7 @@ class Cache:
             starts = int(self._starts.read_text(encoding="ascii")) + 1
         except (OSError, ValueError):
             starts = 1
-        with contextlib.suppress(OutputError):  # a full disk keeps nobody from starting
+        with contextlib.suppress(OutputError):  # a full disk stops no start
             write_text_whole(self._starts, f"{starts}\n")
         return starts
 

@@ -11,7 +11,7 @@ from slipwise.logs.clock_steps import AGREE, BACK, ENOUGH
 
 Stamped = Command | Wheels | Pose | Gyro | Override
 
-AHEAD = 60.0  # s ahead of it, after which one stamp alone is doubted
+AHEAD = 60.0  # s ahead of it, after which one stamp alone is held back
 
 
 class Clock(Enum):
@@ -22,7 +22,7 @@ class Clock(Enum):
 
 
 class ClockWatch:
-    """Holds doubtful samples back until others agree with them, or do not."""
+    """Holds suspicious samples back until others agree with them, or do not."""
 
     def __init__(self) -> None:
         self.newest = -math.inf

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Samples from a program as a transport: nobody listens to results."""
+"""Samples from a program as a transport without listeners."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Feed:
         self._thread.start()
 
     def publish(self, output: Output) -> None:
-        """Nobody listens."""
+        """Has no listener."""
 
     def notices(self) -> list[str]:
         """Nothing to say."""
@@ -49,7 +49,7 @@ class Feed:
 
     @property
     def wheels(self) -> bool:
-        """Nobody said so."""
+        """Unknown."""
         return False
 
     def close(self) -> None:

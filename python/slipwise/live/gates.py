@@ -26,7 +26,7 @@ class GateRules:
 
 
 def rules_for(start: Model | None, *, reverse: bool | None, stale_after: float) -> GateRules:
-    """Return the rules that go with what is known at the start.
+    """Return the rules that go with the start model.
 
     Args:
         start: the model that the node starts from, if any.

@@ -23,7 +23,7 @@ _OUR_ODOMETRY = "until then the odometry of slipwise (~/odometry, ~/twist) has w
 class Handover:
     """Writes what is asked for; what cannot be written or does not fit is said once, and the rest goes on.
 
-    Limits of speeds and accelerations are never among it, and a running node is told only what it takes
+    Limits of speeds and accelerations are never among it, and a running node gets only what it takes
     while it runs.
 
     Args:
@@ -34,7 +34,7 @@ class Handover:
     def __init__(self, rules: ApplyTable, said: Said) -> None:
         self._rules, self._said = rules, said
         self._reached: set[str] = set()  # targets that got something
-        self._told: set[tuple[str, str]] = set()  # targets and names of what nodes were told
+        self._sent: set[tuple[str, str]] = set()  # targets and names of parameters that nodes got
         self._options = ExportOptions(
             ros_distro=rules.ros_distro or os.environ.get("ROS_DISTRO") or None,
             update_rate=rules.update_rate,
@@ -42,7 +42,7 @@ class Handover:
         )
 
     def withdraw(self, t: float, model: Model, why: str) -> list[AppliedParameters]:
-        """Write the start values into the files again, with a word why; return what nodes are to be told.
+        """Write the start values into the files, with a word why; return the parameters for running nodes.
 
         Args:
             t: now, a stamp [s].
@@ -53,19 +53,19 @@ class Handover:
         mark = f"# Withdrawn at stamp {t:.3f} s, these are the start values again: {reason}\n"
         again = self.hand_on(t, model, mark=mark)
         names = {(each.target, name) for each in again for name in each.values}
-        left = sorted(f"{name} of {target}" for target, name in self._told - names)
+        left = sorted(f"{name} of {target}" for target, name in self._sent - names)
         if left:
-            self._said.note(t, f"the start has no {', '.join(left)}: restart the nodes that were told")
-        self._told = names
+            self._said.note(t, f"the start has no {', '.join(left)}: restart the nodes that got values")
+        self._sent = names
         return again
 
     def hand_on(self, t: float, model: Model, *, mark: str = "") -> list[AppliedParameters]:
-        """Write the files, each with a `mark` on top; return what running nodes are to be told."""
+        """Write the files, each with a `mark` on top; return the parameters for running nodes."""
         if self._rules.folder is None and not (self._rules.set_parameters and self._rules.targets):
             self._said.begins(t, "nowhere", "nothing is handed on: [live.apply] names no folder to write to")
             return []
         written = [_MODEL] if self._write(t, _MODEL, mark + model.to_yaml()) else []
-        told = []
+        wanted = []
         for target in self._rules.targets:
             try:
                 made = export_model(model, target, name="the live model", options=self._options)
@@ -80,11 +80,11 @@ class Handover:
                 written.append(name)
                 self._reached.add(target)
             if self._rules.set_parameters:
-                told += self._to_tell(t, target, made.values)
+                wanted += self._to_send(t, target, made.values)
         if written:
             what = "start values written to" if mark else "written to"
             self._said.note(t, f"{what} {self._rules.folder}: {', '.join(written)}")
-        return told
+        return wanted
 
     def finish(self, t: float) -> None:
         """Say which targets got nothing until the end."""
@@ -92,15 +92,15 @@ class Handover:
         if missed:
             self._said.note(t, f"nothing was ever handed on to {', '.join(missed)}")
 
-    def _to_tell(self, t: float, target: str, values: dict[str, Value]) -> list[AppliedParameters]:
-        """Return what the target's node may be told; what it takes at a restart alone is said once."""
+    def _to_send(self, t: float, target: str, values: dict[str, Value]) -> list[AppliedParameters]:
+        """Return what the target's node takes while it runs; others are said once."""
         node = self._rules.nodes.get(target, TARGET_NODES[target])
         table = TABLES[target]
         rows = table.of_distro(self._options.ros_distro if table.differs else None)
         at_once = {name: value for name, value in values.items() if _may_be_told(rows.get(name))}
         file = self._path(find_target(target).file_name)
         if table.no_callback:
-            text = f"{target}: {node} is not told: {table.no_callback}. Restart it with {file}"
+            text = f"{target}: {node} gets nothing: {table.no_callback}. Restart it with {file}"
             self._said.begins(t, f"restart {target}", f"{text}; {_OUR_ODOMETRY}")
             return []
         later = [name for name, row in rows.items() if name in values and row.effect == "at a restart"]
@@ -110,7 +110,7 @@ class Handover:
         if not at_once:
             return []
         self._reached.add(target)
-        self._told |= {(target, name) for name in at_once}
+        self._sent |= {(target, name) for name in at_once}
         return [AppliedParameters(t, target, node, dict(at_once), file)]
 
     def _path(self, name: str) -> str:

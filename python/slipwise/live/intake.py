@@ -60,7 +60,7 @@ class Intake:
         self.surfaces.start_drive(name, drive)
 
     def take_cue(self, cue: SurfaceCue) -> None:
-        """Take what somebody says of the ground: it holds from now on."""
+        """Take a label of the ground: it holds from now on."""
         self.surfaces.take(cue, self.newest)
 
     def take(self, sample: Stamped) -> None:

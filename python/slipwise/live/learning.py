@@ -59,7 +59,7 @@ class Learning:
         return learned
 
     def judge(self, t: float, *, last: bool = False) -> bool:
-        """Judge what is known where it is time to, at a stamp [s]; return whether it was.
+        """Judge the model when it is time to, at a stamp [s]; return whether it was.
 
         Args:
             t: now.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""On which topics somebody listens: what nobody hears need not be made."""
+"""Which topics have subscribers: messages without one need not be made."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ LOOK_EVERY = 0.5  # s between two looks; who comes meanwhile hears nothing until
 
 
 class Listeners:
-    """Remembers for half a second whether a topic is heard; for one thread.
+    """Remembers for half a second whether a topic has subscribers; for one thread.
 
     Args:
         connections: how many subscriptions hear us on a topic.
@@ -24,10 +24,10 @@ class Listeners:
         self._looked: dict[str, tuple[float, bool]] = {}
 
     def on(self, topic: str) -> bool:
-        """Return whether somebody listened at the last look."""
+        """Return whether there was a subscriber at the last look."""
         now = self._now()
-        at, heard = self._looked.get(topic, (now - LOOK_EVERY, False))
+        at, subscribed = self._looked.get(topic, (now - LOOK_EVERY, False))
         if now >= at + LOOK_EVERY:
-            heard = self._connections(topic) > 0
-            self._looked[topic] = (now, heard)
-        return heard
+            subscribed = self._connections(topic) > 0
+            self._looked[topic] = (now, subscribed)
+        return subscribed

@@ -84,7 +84,7 @@ class LiveNode:
         self._stopped.set()
 
     def run(self) -> None:
-        """Take samples until the transport has no more, or somebody stops the node; then save.
+        """Take samples until the transport has no more, or the node is stopped; then save.
 
         Raises:
             SlipwiseError: the transport cannot be used, or fails; or the state could not be saved at the end.
@@ -270,7 +270,7 @@ class LiveNode:
                 raise ValueError("no pose was measured yet")
             learner = self._parts.learning.learner
             self._publish(path_ahead(learner, self._odometry, rows, horizon=horizon, asked=True))
-        except Exception as problem:  # it is somebody's text
+        except Exception as problem:  # the text comes from outside
             said.count("a prediction that cannot be made")
             said.once(t, "no prediction", f"a prediction was asked for that cannot be made: {problem}")
 

@@ -42,7 +42,7 @@ def path_ahead(
         odometry: the pose now.
         commands: what the robot will be given, rows of (t [s], v [m/s], omega [rad/s]), [N, 3].
         horizon: how far to predict [s].
-        asked: whether somebody asked for it.
+        asked: whether a request asked for it.
 
     Raises:
         SettingsError: nothing was measured yet, or the commands or the horizon are impossible.

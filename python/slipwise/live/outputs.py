@@ -78,7 +78,7 @@ def filled(prior: float, now: float, target: float) -> float | None:
 
 @dataclass(frozen=True)
 class MoveNow:
-    """A command worth holding, from standing, and what is known after it and those before it."""
+    """A command worth holding, from standing, and the knowledge after it and those before it."""
 
     v: float  # m/s
     omega: float  # rad/s

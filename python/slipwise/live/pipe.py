@@ -55,7 +55,7 @@ class Pipe:
 
     @property
     def wheels(self) -> bool:
-        """Nobody knows before a line says so."""
+        """Unknown before the first line."""
         return False
 
     def close(self) -> None:

@@ -56,7 +56,7 @@ class Replay(Feed):
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """Names of the sources of poses, where they are told apart; the first's first."""
+        """Names of the sources of poses, where they are distinguished; the first's first."""
         return self._sources
 
     @property
@@ -98,7 +98,7 @@ def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Comman
 
     Args:
         run: what was measured.
-        sources: names of the sources of poses, where they are told apart.
+        sources: names of the sources of poses, where they are distinguished.
 
     Raises:
         LogError: the log has known forces.

@@ -108,19 +108,19 @@ class RosMessages:
         self._key_value = types["diagnostic_msgs/msg/KeyValue"]
         self._diagnostic = types["diagnostic_msgs/msg/DiagnosticStatus"]
 
-    def of(self, output: Output, heard: Callable[[str], bool] = lambda _topic: True) -> list[RosMessage]:
+    def of(self, output: Output, wanted: Callable[[str], bool] = lambda _topic: True) -> list[RosMessage]:
         """Return the messages that say what `output` says.
 
         Args:
             output: what the node gives.
-            heard: whether somebody listens on a topic of TOPICS; where not, what comes again and again is
+            wanted: whether a subscriber is on a topic of TOPICS; where not, what comes again and again is
                 left out: odometry, twist and the path of the present command.
         """
         match output:
             case Odometry():
-                return self._odometry(output, heard)
+                return self._odometry(output, wanted)
             case Path():
-                return self._path(output) if output.asked or heard("predicted_path") else []
+                return self._path(output) if output.asked or wanted("predicted_path") else []
             case Status():
                 return [self._diagnostics(output.t, diagnostics_of(output, self._name), output.vehicle)]
             case SurfaceNow():
@@ -134,8 +134,8 @@ class RosMessages:
             case AppliedParameters():
                 return []  # for the node that it names alone
 
-    def _odometry(self, now: Odometry, heard: Callable[[str], bool]) -> list[RosMessage]:
-        whole, alone = heard("odometry"), heard("twist")
+    def _odometry(self, now: Odometry, wanted: Callable[[str], bool]) -> list[RosMessage]:
+        whole, alone = wanted("odometry"), wanted("twist")
         if not (whole or alone):
             return []
         stamp = stamp_ns(now.t)

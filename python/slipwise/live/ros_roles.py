@@ -37,7 +37,7 @@ def find_roles(
     Args:
         wire: shows what is published.
         options: topics that are given; the others are guessed.
-        say: is told what is waited for.
+        say: called with what is waited for.
         own: the name below which the node publishes; such topics are never chosen.
 
     Raises:
@@ -71,21 +71,21 @@ def with_oriented_imu(wire: RosWire, roles: Roles, say: Callable[[str], None]) -
     Args:
         wire: brings its messages.
         roles: that were chosen.
-        say: is told what was found.
+        say: called with what was found.
     """
     if roles.imu is None or roles.pose is None or roles.pose.type != NAV_SAT_FIX:
         return roles
-    heard = queue.SimpleQueue[bool]()
+    found = queue.SimpleQueue[bool]()
     read, values = reader_of(IMU, ros_types()), IMU_VALUES[IMU]
 
     def take(payload: bytes) -> None:
         with contextlib.suppress(Exception):  # what cannot be read says nothing; the transport says so
-            heard.put(rotation_of(*values(read(payload))) is not None)
+            found.put(rotation_of(*values(read(payload))) is not None)
 
     wire.subscribe(roles.imu.name, IMU, take)
     with contextlib.suppress(queue.Empty):
         for _ in range(_LISTENED_TO):
-            if heard.get(timeout=HEARD_WITHIN):
+            if found.get(timeout=HEARD_WITHIN):
                 return roles
         say(f"{roles.imu.name} has no orientation: its yaw rates are used")
         return replace(roles, imu=None)

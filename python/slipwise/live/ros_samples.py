@@ -36,7 +36,7 @@ OLDEST_IMU = 0.2  # s; an older orientation says nothing of a fix
 
 
 def _nobody(_: str) -> None:
-    """Nobody listens."""
+    """Has no listener."""
 
 
 ToCommand = Callable[[Any, float], Command | None]
@@ -75,7 +75,7 @@ def to_wheels(
 ) -> ToWheels:
     """Return what makes a wheel twist of a message of type `kind` and its stamp [s].
 
-    `say` is told what is found of `topic`.
+    `say` is called with what is found of `topic`.
 
     Raises:
         SettingsError: joint states need the sizes of the robot.

@@ -103,7 +103,7 @@ class RosTransport:
         self._caller.start()
 
     def publish(self, output: Output) -> None:
-        """Publish an output where somebody listens; parameters of other nodes are set by a thread of its own.
+        """Publish an output that has a subscriber; parameters of other nodes are set by a thread of its own.
 
         What is latched, notes and answers are published all the same: they come once.
         """

@@ -8,7 +8,7 @@ from collections import Counter, deque
 from slipwise.live.outputs import Note
 
 KEPT = 50  # notes; a status carries no more
-MOST_REASONS = 200  # that are told apart: samples name some of them, and memory is not theirs
+MOST_REASONS = 200  # that are counted apart: samples name some of them, and memory is not theirs
 OTHERS = "other reasons"
 LONGEST = 1000  # characters of a note
 

@@ -18,7 +18,7 @@ class Twist:
 
 
 class Command(Twist):
-    """What the robot was told to do."""
+    """A command."""
 
     __slots__ = ()
 
@@ -43,7 +43,7 @@ class Pose:
     roll: float | None = None  # rad
     pitch: float | None = None  # rad; by REP-103 nose down is positive
     source: str = ""  # that measured it, of several; nothing: the first
-    fix: str = ""  # what a satellite receiver says of it, where fixes are told apart
+    fix: str = ""  # what a satellite receiver says of it, where fixes are distinguished
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ class Override:
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What somebody asks of the node.
+    """A request to the node.
 
     `apply` hands the parameters learned to others now; `predict` asks for the path of given commands.
     """
@@ -75,16 +75,16 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class SurfaceCue:
-    """What somebody says of the ground, when it comes: its name, or that it changes now."""
+    """A label of the ground, when it comes: its name, or that it changes now."""
 
     label: str = ""  # empty: it changes, to what is not known
 
 
 @dataclass(frozen=True, slots=True)
 class DriveStart:
-    """What is known of a drive that begins after a while or elsewhere."""
+    """Facts about a drive that begins after a while or elsewhere."""
 
-    label: str = ""  # name of the surface, where somebody thinks to know it
+    label: str = ""  # name of the surface, if a label names it
     date: str = ""  # ISO, for the table of surfaces
 
 
@@ -102,7 +102,7 @@ class Unusable:
 
     reason: str  # for the count
     text: str  # what to say
-    kind: str  # of what is said
+    kind: str  # of the sentence
 
 
 Sample = Command | Wheels | Pose | Gyro | Override | Request | SurfaceCue | RunStart | Unusable

@@ -14,11 +14,11 @@ from slipwise.logs.header_clock import apart_words, clock_between, is_apart, shi
 
 LOOKED_AT = 200  # messages with a header, of late
 _STEADY = 0.3  # s that delays differ by; more is another rate of the clock
-_FEWEST = 20  # of a topic, before its clock is taken for another than that of the poses
+_FEWEST = 20  # of a topic, before its clock counts as another than that of the poses
 
 
 def _nobody(_: str) -> None:
-    """Nobody listens."""
+    """Has no listener."""
 
 
 class Stamps:
@@ -26,7 +26,7 @@ class Stamps:
 
     Args:
         first: the topic whose clock all is dated on; another where it has no headers.
-        say: is told of clocks that are apart.
+        say: called with clocks that are apart.
     """
 
     def __init__(self, first: str = "", say: Callable[[str], None] = _nobody) -> None:

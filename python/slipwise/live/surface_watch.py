@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The surface that is driven on, as the learner remembers it: what is said of it, and what others say."""
+"""The surface that is driven on, as the learner remembers it, and labels from others."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class SurfaceWatch:
             case "new" if not change.name:
                 self._said.note(t, "the surface is a new one")
             case "merged":
-                self._said.note(t, f"{name} and {change.other} are one surface: they cannot be told apart")
+                self._said.note(t, f"{name} and {change.other} are one surface: they cannot be distinguished")
             case "dropped":
                 self._said.note(t, f"{name} is forgotten: more surfaces than can be kept")
 

@@ -37,7 +37,7 @@ def listening_socket(address: str) -> socket.socket:
 
 
 class Udp:
-    """Listens on loopback unless told otherwise.
+    """Listens on loopback by default.
 
     Args:
         address: "host:port" to listen on; port 0 takes a free one.
@@ -77,12 +77,12 @@ class Udp:
 
     @property
     def finished(self) -> bool:
-        """Never: somebody may send again."""
+        """Never: a packet may still come."""
         return False
 
     @property
     def wheels(self) -> bool:
-        """Nobody knows before a packet says so."""
+        """Unknown before the first packet."""
         return False
 
     def close(self) -> None:

@@ -33,7 +33,7 @@ class Hysteresis:
         """Change the state at once."""
         self.state, self._agreed = state, 0
 
-    def doubt(self) -> None:
+    def suspend(self) -> None:
         """Take back what speaks for another state: the terrain changed, and judgements begin again."""
         self._agreed = 0
 
@@ -103,4 +103,4 @@ class ModelValidity:
     def terrain_changed(self) -> None:
         """Begin to count agreeing judgements again."""
         for each in (self._whole, *self._parameters.values()):
-            each.doubt()
+            each.suspend()

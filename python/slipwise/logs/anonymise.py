@@ -25,7 +25,7 @@ def anonymised(log: Log, *, keep: Collection[str] = ()) -> Log:
 
     Each frame of each run is turned and moved so that its first pose is the origin with a yaw of 0, and its
     first height 0. Stamps count from the log's start; gaps between runs end at `LONGEST_GAP`, and a run that
-    is on another clock starts at 0. Names of runs become hashes over name and measurements, which nobody can
+    is on another clock starts at 0. Names of runs become hashes over name and measurements, which cannot
     try out who does not have the log. Numbers of wheels and commands are carried along, other columns are
     not: they may hold coordinates, stamps or names.
 

@@ -220,8 +220,8 @@ def _runs_of_parts(
     context.notes.extend(begins)
     runs, compared = list[Run](), True
     for number, part in enumerate(parts, start=1):
-        found, told = _runs(path, roles, part, context)
-        compared = compared and told
+        found, comparable = _runs(path, roles, part, context)
+        compared = compared and comparable
         runs += found if number == 1 else [replace(run, name=f"{run.name}, part {number}") for run in found]
     return tuple(run for run in runs if len(parts) == 1 or len(run.poses)), compared
 

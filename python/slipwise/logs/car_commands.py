@@ -37,9 +37,9 @@ def with_car_commands(log: Log, options: LogOptions) -> Log:
         if given is None:
             runs.append(run)
             continue
-        told = CarCommands(given.v, given.omega, car.top_speed, car.curvature)
+        car_commands = CarCommands(given.v, given.omega, car.top_speed, car.curvature)
         v, vy, omega = (np.ascontiguousarray(rows[:, k]) for k in (1, 2, 3))
-        runs.append(replace(run, commands=Inputs(given.t, v, vy, omega, told)))
+        runs.append(replace(run, commands=Inputs(given.t, v, vy, omega, car_commands)))
     note = f"commands are throttle and steering of {options.vehicle}, whose curves are learned"
     return replace(log, runs=tuple(runs), notes=(*log.notes, note))
 

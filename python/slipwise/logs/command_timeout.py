@@ -13,7 +13,7 @@ from slipwise.logs.motion_windows import wrapped
 
 REPEAT = 0.2  # s between the zeros that stand for an ended command,
 _LONGEST = 600.0  # s of them after each command
-_AGE = 0.1  # s, of the steps in which what is left of a command is looked at
+_AGE = 0.1  # s, of the steps in which a command's age is checked
 _OLDEST = 6.0  # s after a command
 _SLOWEST = 0.05  # m/s or rad/s; less is no command to move
 _FEWEST = 10  # pieces of motion in a step of ages

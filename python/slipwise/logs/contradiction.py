@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Contradiction:
-    """Poses and inputs that cannot both be right: what is learned from them is no slip."""
+    """Poses and inputs that cannot both be right: their difference is no slip."""
 
     kind: str  # a short stable name, such as "does-not-move"
     sentence: str

@@ -32,7 +32,7 @@ class Seen:
 
     evidence: _core.MotionEvidence
     runs: Sequence[str]  # names, by the evidence's number of the run
-    input_name: str  # "command" or "wheel", what is learned from
+    input_name: str  # "command" or "wheel", the input that is learned from
     positions: bool  # headings are courses, which tell nothing of a heading
     gyro: bool  # turns of a gyro are learned from
     sensor_yaw: float  # how the pose sensor is known to be turned on the robot [rad]
@@ -102,7 +102,7 @@ def contradictions(
 
     Args:
         log: what `open_log` returned.
-        input_name: "command" or "wheel", what is learned from.
+        input_name: "command" or "wheel", the input that is learned from.
         unknown_after: an input is unknown once it is older than this [s].
         sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
     """

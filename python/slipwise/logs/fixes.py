@@ -61,7 +61,7 @@ def fix_codes(words: Sequence[str], where: str = "") -> Floats:
 
 
 def fix_of_status(status: float) -> str:
-    """Return the name of a NavSatStatus; nothing where it is unknown."""
+    """Return the name of a NavSatStatus; an empty string if it is unknown."""
     return _OF_STATUS.get(int(status), "") if np.isfinite(status) else ""
 
 
@@ -74,7 +74,7 @@ def status_codes(status: Floats) -> Floats:
 
 
 def fix_words(codes: Floats) -> NDArray[np.object_]:
-    """Return the names of fixes, [N]; nothing where nothing is known."""
+    """Return the names of fixes, [N]; empty if nothing is known."""
     return np.array([FIXES[int(code)] or None for code in np.nan_to_num(codes)], dtype=object)
 
 

@@ -87,7 +87,7 @@ def _in_chunk(content: bytes) -> bool:
 
 
 class FoxgloveFile(BagFile):
-    """An open MCAP file; its messages are told by the ROS types that their schemas stand for."""
+    """An open MCAP file; its messages are named by the ROS types that their schemas stand for."""
 
     def __init__(self, path: Path, files: Sequence[Path], tally: Tally) -> None:
         self._file = files[0]

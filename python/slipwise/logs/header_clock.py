@@ -169,9 +169,9 @@ def clocks_of(
     alike = {name: each for name, each in known.items() if abs(each.rate - main.rate) <= SIMULATED}
     lost = frozenset(found) - frozenset(alike)
     shifts = {name: _between(main, each) for name, each in alike.items()}
-    told = compare_clocks(*clock) if clock is not None and main.simulated else None
-    if told is not None and abs(told.rate - main.rate) <= SIMULATED:
-        main = told
+    clock_offset = compare_clocks(*clock) if clock is not None and main.simulated else None
+    if clock_offset is not None and abs(clock_offset.rate - main.rate) <= SIMULATED:
+        main = clock_offset
     elif not main.simulated:  # the least delayed of the streams on its clock tells it best
         leads = [each.offset for name, each in alike.items() if not shifts[name]]
         main = main.moved(max(leads) - main.offset)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Counts what is left out of a log, so that nothing is ever dropped in silence."""
+"""Counts rejected samples of a log, so that nothing is ever dropped in silence."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from slipwise.logs.log import LeftOut
 
 
 class Tally:
-    """Collects what is left out; equal reasons are added up and keep their first place."""
+    """Collects rejected samples; equal reasons are added up and keep their first place."""
 
     def __init__(self) -> None:
         self._entries: dict[tuple[str, str], tuple[int, str]] = {}

@@ -50,7 +50,7 @@ def motion_windows(rows: Floats, input_name: str) -> MotionWindows:
 
 
 def run_name(runs: Sequence[str], number: float) -> str:
-    """Return the name of a run by its number; one that nobody named has none."""
+    """Return the name of a run by its number; an unnamed one has none."""
     return runs[int(number)] if number < len(runs) else ""
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whose topics these are, by their namespaces: those of another robot are not taken for this one's."""
+"""Whose topics these are, by their namespaces: those of another robot are not used for this one."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def others_topics(candidates: Mapping[str, Sequence[str]], given: Mapping[str, s
         return {} if given else _siblings(candidates)
     foreign = {}
     for found in candidates.values():
-        rivals = any(own in _namespaces(name) for name in found)
+        others = any(own in _namespaces(name) for name in found)
         for name in set(found) - set(given.values()):
             robot = robot_of(name)
             if not robot or own in _namespaces(name):
                 continue
-            if _namespaces(name)[0] == robot or _alike(robot, own) or rivals:
+            if _namespaces(name)[0] == robot or _alike(robot, own) or others:
                 foreign[name] = f"it is of {robot}, not of {own}"
     return foreign
 

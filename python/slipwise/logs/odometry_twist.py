@@ -11,7 +11,7 @@ import numpy as np
 from slipwise.logs.log import Bools, Floats
 from slipwise.logs.motion_windows import wrapped
 
-_MOVES = (0.05, 0.05)  # [m], [rad] that the poses must change by before a twist of zero is doubted
+_MOVES = (0.05, 0.05)  # [m], [rad] that the poses must change by before a twist of zero is rejected
 
 
 def twist_and_pose(message: Any) -> tuple[float, ...]:

@@ -129,7 +129,7 @@ class LogOptions:
         return load_vehicle(self.vehicle)
 
     def _take_vehicle(self) -> None:
-        """Take the sizes that the vehicle's description has and nobody gave."""
+        """Take the sizes that the vehicle's description has and the options lack."""
         described = self._described()
         if described is None:
             return

@@ -59,7 +59,7 @@ def with_poses(log: Log, path: Path, options: LogOptions) -> Log:
 def with_other_poses(log: Log, path: Path, options: LogOptions) -> Log:
     """Return the log with the poses of a further file as a source beside its own, named by the file's stem.
 
-    Its offset is found where `pose_clock_offset` is "auto", else none is added; what is left is learned.
+    Its offset is found where `pose_clock_offset` is "auto", else none is added; the rest is learned.
 
     Raises:
         LogError: the file cannot be read, does not overlap with the log, or the offset cannot be found.

@@ -27,7 +27,7 @@ def track_stream(path: Path, unit: str, fixes: Iterable[tuple[int, Fix | None]],
         path: the file, for messages.
         unit: what a number counts: "line" or "point".
         fixes: each with its number; None where it has no time or no place.
-        tally: counts what is left out.
+        tally: counts rejected samples.
     """
     rows, numbers, unusable = [], [], []
     for number, fix in fixes:

@@ -17,7 +17,7 @@ def save_log(log: Log, path: str | Path) -> None:
 
     Raises:
         OutputError: the ending is not one of these, or the file cannot be written.
-        LogError: the log has no poses, so that nobody could read it again.
+        LogError: the log has no poses and could not be read again.
     """
     path = Path(path)
     if not any(len(run.poses) for run in log.runs):

@@ -227,7 +227,7 @@ def missing_input(table: Table, wheels: InputColumns | None) -> dict[str, str]:
 
 
 def use_of_column(name: str, names: Collection[str], options: LogOptions) -> tuple[str, str]:
-    """Return what a column is used as, nothing where it is not, and why."""
+    """Return what a column is used as (empty: not used) and why."""
     if name in ("t", "run"):
         return {"t": "time", "run": "run"}[name], ""
     if name in POSE_COLUMNS:

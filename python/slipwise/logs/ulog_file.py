@@ -54,7 +54,7 @@ def read_ulog(path: Path) -> FlightMessages:
 
 
 class _Forward(io.BufferedReader):
-    """A file in which nobody goes back for ever, as pyulog does from the end of some damaged ones."""
+    """A file that allows no endless seek back, as pyulog does from the end of some damaged ones."""
 
     _farthest, _returns = -1, 0
 

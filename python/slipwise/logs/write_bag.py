@@ -26,7 +26,7 @@ POSE_TOPIC = "/ground_truth/pose"
 _RUN_GAP_NS = 10_000_000_000  # between runs whose own times do not keep them apart
 _LATEST = 2**31 - 1  # s; a header's stamp holds no later second
 _LATEST_NS = _LATEST * 1_000_000_000
-_UNKNOWN_VARIANCE = 1e6  # of an odometry's pose that nobody measured
+_UNKNOWN_VARIANCE = 1e6  # of an odometry's unmeasured pose
 
 Entry = tuple[int, str, bytes | memoryview]  # stamp [ns], topic, serialised message
 
@@ -57,7 +57,7 @@ def write_mcap(log: Log, path: Path) -> None:
         end = stop + shift
     if not log.runs:
         raise LogError("there is no run to write")
-    if has_course(log.runs):  # a pose in a bag has a heading, which nobody measured
+    if has_course(log.runs):  # a pose in a bag has a heading, which was not measured
         advice = "write a table: .csv or .parquet"
         raise LogError("positions without headings are not written as a bag", where=str(path), advice=advice)
     entries.sort(key=lambda entry: entry[0])

@@ -82,14 +82,14 @@ def force_parts(
     covariance: NDArray[np.float64],
     identifiable: Sequence[bool],
 ) -> tuple[ForcePart, ...]:
-    """Return what is known of each part of a force.
+    """Return the estimate of each part of a force.
 
     Args:
         frame: what the force is fixed to.
         names: of all parameters of a model, [parameters].
         mean: their values.
         covariance: of these.
-        identifiable: whether the drive told more of each than was known before.
+        identifiable: whether the drive determines each better than the prior.
     """
     terms, parts = _terms(frame), []
     for axis in dict.fromkeys(term.axis for term in terms.values()):
@@ -125,7 +125,7 @@ def _mean_of(values: NDArray[np.float64], covariance: NDArray[np.float64]) -> tu
 def without_force(model: Model) -> Model:
     """Return the model for another day, without the force that was learned beside its slip.
 
-    What is known of slip stays where the drive told the force from it. Where it did not, slip is as it would
+    The slip stays where the drive separated the force from it. Where it did not, slip is as it would
     be had there been no force.
     """
     section = model.content.body_force

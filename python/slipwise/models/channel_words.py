@@ -22,7 +22,7 @@ _CHANNELS = {"v": "speed", "omega": "yaw-rate"}
 
 @dataclass(frozen=True)
 class _Said:
-    """What is said of one channel: identified estimates alone, None where one is not."""
+    """The words for one channel: identified estimates alone, None where one is not."""
 
     delay: tuple[float, float] | None  # s
     at_once: bool  # the delay is known to be as good as none, and there is nothing else

@@ -29,7 +29,7 @@ class PhysicalParameter:
     std: float
     unit: str
     identified: bool  # known to a stated fraction, or known to be negligible
-    target_std: float = math.nan  # at which it is identified; NaN: nobody asked
+    target_std: float = math.nan  # at which it is identified; NaN: not asked
 
     def __str__(self) -> str:
         unit = "" if self.unit == "-" else f" {self.unit}"
@@ -47,7 +47,7 @@ def known(value: float, std: float) -> bool:
 
 
 def physical_parameters(model: Model) -> tuple[PhysicalParameter, ...]:
-    """Return the parameters and limits of a model; what is learned as a logarithm is in its own unit."""
+    """Return the parameters and limits of a model; values learned as logarithms are in their own units."""
     effects = _effects(model)
     rows = []
     for p, effect in zip(model.content.parameters, effects.tolist(), strict=True):

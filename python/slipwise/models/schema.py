@@ -332,7 +332,7 @@ class ModelFile(_Section):
     surfaces: list[
         SurfaceSection
     ] = []  # that are remembered; the parameters are those of the last one driven
-    labels: LabelSection | None = None  # of surfaces, where somebody gave some
+    labels: LabelSection | None = None  # of surfaces, where there are some
 
     @model_validator(mode="after")
     def _surfaces_have_this_slip(self) -> ModelFile:

@@ -216,7 +216,7 @@ def _bars(drive: Excitation, lessons: Sequence[Lesson]) -> Figure:
     names = list(drive.knowledge.names)
     return Figure(
         key="parameters",
-        label="what is left of each parameter's standard deviation after each move",
+        label="each parameter's standard deviation after each move, as a share of that before",
         traces=[
             {
                 "type": "bar",

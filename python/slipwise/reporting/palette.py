@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One colour and line per method in every figure, told apart by the colour-blind (Okabe and Ito 2008)."""
+"""One colour and line per method in every figure, distinct for the colour-blind (Okabe and Ito 2008)."""
 
 from __future__ import annotations
 

@@ -143,7 +143,7 @@ def _words(change: SurfaceChange) -> str:
         "new": f"{name} is remembered" if change.name else "another surface, not driven before",
         "recalled": f"{name} recalled",
         "kept": f"still {name}",
-        "merged": f"{change.other} cannot be told from {name}: merged",
+        "merged": f"{change.other} cannot be distinguished from {name}: merged",
         "dropped": f"{name} forgotten: too many",
     }[change.what]
     return f"{text}, probability {change.probability:.3f}" if change.what in ("recalled", "kept") else text

@@ -18,7 +18,7 @@ CHANNELS = {"forward": 0, "yaw": 2}  # of the chart (x, y, yaw)
 _ACROSS = 24  # cells along the longer side, at most
 _FEWEST = 3  # windows of a cell that is shown
 _AWAY = 10.0  # s between two visits to a cell that are two passes
-_LEAST_PASSES = 8  # cells passed twice, from which their agreement is told
+_LEAST_PASSES = 8  # cells passed twice, from which their agreement is computed
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-CURVE_POINTS = 2000  # of one curve; more cannot be told apart on a screen
+CURVE_POINTS = 2000  # of one curve; more do not show on a screen
 
 
 def thinned(length: int, limit: int = CURVE_POINTS) -> NDArray[np.int64]:

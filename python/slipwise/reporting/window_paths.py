@@ -48,7 +48,7 @@ def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[Cho
 
 @dataclass(frozen=True, eq=False)
 class _Drive:
-    """What is known of one window."""
+    """Results of one window."""
 
     history: _core.InputHistory
     limited: _core.InputHistory  # what the model's limits leave of it

@@ -18,7 +18,7 @@ _POSE = 7  # columns of a pose, before its source
 def source_names(runs: Iterable[Run]) -> tuple[str, ...]:
     """Return the names of the sources of poses; the first is that of the poses which predictions start from.
 
-    Nothing where there is one source whose errors are all of one sort, as in most logs.
+    An empty tuple if there is one source whose errors are all of one sort, as in most logs.
     """
     names: dict[str, None] = {}
     fixes: set[float] = set()

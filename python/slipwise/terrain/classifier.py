@@ -88,7 +88,7 @@ class Answer:
     surfaces: tuple[str, ...]
     kind: NDArray[np.object_]  # [N] "vibration", "current", "both", or empty
     probability: Floats  # [N, K] of each surface, if it is one of those that were trained
-    unknown: Floats  # [N] that it is none of them, were that as likely as not beforehand
+    unknown: Floats  # [N] that it is none of them, with even prior odds
 
     @property
     def nearest(self) -> NDArray[np.int64]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads what a terrain classifier, or somebody else, said of the surface: windows by run and time."""
+"""Reads labels of the surface from a terrain classifier or another source: windows by run and time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Window:
     """What was said of one window."""
 
     start: float  # s
-    end: float  # s; nobody knows the answer before
+    end: float  # s; the answer comes only then
     answer: _core.TerrainAnswer
 
 
@@ -92,9 +92,9 @@ def _answers(table: Table, tally: Tally) -> list[tuple[int, _core.TerrainAnswer]
     unknown = table.numbers(known, tally) if known in table.names else np.zeros(len(table))
     made = []
     for row in np.flatnonzero(np.isfinite(odds).all(axis=1)).tolist():
-        doubt = float(unknown[row]) if np.isfinite(unknown[row]) else 0.0
+        unknown_share = float(unknown[row]) if np.isfinite(unknown[row]) else 0.0
         try:
-            made.append((row, _core.TerrainAnswer(classes, odds[row], doubt)))
+            made.append((row, _core.TerrainAnswer(classes, odds[row], unknown_share)))
         except ValueError as problem:
             raise LogError(str(problem), where=table.place(row), advice=_ADVICE) from problem
     return made

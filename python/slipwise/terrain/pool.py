@@ -34,7 +34,7 @@ class Pool:
     rejections: tuple[Rejection, ...]
 
     def unknown(self, probability: Floats, newness: Floats) -> Floats:
-        """Return P(unknown) [N] where known and unknown are equally likely beforehand.
+        """Return P(unknown) [N] where known and unknown are equally likely a priori.
 
         Args:
             probability: [N, K] pooled.

@@ -49,7 +49,7 @@ def train(
         recordings: with labels.
         seconds: of a window, 1 to 5.
         seed: of trees and of the folds.
-        progress: is told what is done, and which share of the whole.
+        progress: called with the current step and its share of the whole.
 
     Raises:
         LogError: there are fewer than two surfaces with two runs each.

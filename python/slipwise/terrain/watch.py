@@ -18,7 +18,7 @@ class TerrainWindow:
     start: float  # s
     end: float  # s
     probability: Mapping[str, float]  # of each surface, if it is one of those that were trained
-    unknown: float  # that it is none of them, were that as likely as not beforehand
+    unknown: float  # that it is none of them, with even prior odds
 
 
 class TerrainWatch:

@@ -63,7 +63,7 @@ def test_parameters_that_do_the_same_are_said_to_be_confounded() -> None:
     both = replace(CART, parameters=twins, rates=lambda s, u, p: (s[1], (p[0] + p[1]) * u[0] - 0.5 * s[1]))
     made = ride(4)
     learned = learn_dynamics(both, made.inputs, made.measurements)
-    assert "a and b can hardly be told apart" in learned.verdict
+    assert "a and b can hardly be distinguished" in learned.verdict
 
 
 def test_what_is_measured_after_a_prediction_began_does_not_reach_it() -> None:

@@ -46,7 +46,7 @@ def test_what_speaks_for_a_change_is_forgotten_where_the_terrain_changed() -> No
     state = Hysteresis()
     for _ in range(CONFIRMED - 1):
         state.take("estimated")
-    state.doubt()
+    state.suspend()
     assert state.take("estimated") == "unestimated"
 
 

@@ -18,7 +18,7 @@ from slipwise_sim.demo.slalom_course import FLOORS, Floor, SlalomCourse, slalom_
 from slipwise_sim.demo.slalom_drive import POSE_STD, SlalomDrive, Trace
 
 INPUT = "command"  # what a controller sends
-LOG_SECONDS = 240.0  # [s] of the drives that models are learned from beforehand
+LOG_SECONDS = 240.0  # [s] of the drives that the models are learned from
 LOG_SEED = 5  # of these drives
 SHORT = 1.0  # [s] of the segments of the variant that reacts sooner; from commands they last 2.5 s by default
 AFTER_RESTART = 10_000  # added to a drive's seed: the second drive has noise of its own
@@ -52,7 +52,7 @@ def floor_model(floor: Floor) -> Model:
 
 
 def drive_course(course: SlalomCourse, source: MotionSource, *, seed: int) -> Driven:
-    """Drive once; the source is asked for a model, and told what was measured, every control period.
+    """Drive once; the source receives each measurement and returns a model, every control period.
 
     Args:
         course: where to drive.
@@ -80,7 +80,7 @@ def drive_all(seed: int, models: Sequence[Model]) -> dict[str, Driven]:
 
     Args:
         seed: of the course, and of what is random on it.
-        models: learned beforehand, one for each of `FLOORS`.
+        models: one learned model for each of `FLOORS`.
 
     Raises:
         SlipwiseError: MuJoCo is not installed.

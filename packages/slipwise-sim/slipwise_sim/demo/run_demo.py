@@ -53,7 +53,7 @@ def run_demo(
     Args:
         folder: where to write; created if it is not there.
         options: length and seed of the drive.
-        progress: told what is being done and which fraction of the whole is done, 0 to 1.
+        progress: called with the current step and the fraction of the whole that is done, 0 to 1.
 
     Raises:
         SlipwiseError: MuJoCo is missing, the drive is too short to learn from, or a file cannot be written.

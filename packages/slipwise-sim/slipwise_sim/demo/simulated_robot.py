@@ -24,7 +24,7 @@ class SimulatedRobot:
     Until a model comes whose verdict is good, the controller drives by a vendor's constants.
 
     Args:
-        seed: of the course, of the noise of what is measured, and of the controller's samples.
+        seed: of the course, of the measurement noise, and of the controller's samples.
         rate: times real time.
         course: where to drive; by default the slalom across three floors that the seed draws.
 

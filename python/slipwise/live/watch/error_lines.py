@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Says errors alone: what somebody hears of who asked for quiet."""
+"""Says errors alone, for a quiet node."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class ErrorLines:
             self._thread.put(output)
 
     def notices(self) -> list[str]:
-        """Nobody would read them."""
+        """Not shown."""
         return []
 
     def close(self) -> None:

@@ -118,7 +118,7 @@ class FoxgloveServer:
     def _show_status(self, status: Status) -> None:
         time = stamp_ns(status.t)
         frame = status.odometry.frame if status.odometry is not None else "map"
-        if self._driven.has_sinks():  # nothing is made that nobody looks at
+        if self._driven.has_sinks():  # without a viewer nothing is made
             self._driven.log(self._make.poses_in_frame(status.t, frame, status.driven), log_time=time)
         if self._scene.has_sinks():
             self._scene.log(self._make.scene(self._history.seen(), frame), log_time=time)

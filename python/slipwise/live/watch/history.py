@@ -21,7 +21,7 @@ _SENSOR_JUMP = 5.0  # m between two of its points from which on it begins again
 class Seen:
     """All that there is to show."""
 
-    count: int  # of statuses so far: what changed is told by it
+    count: int  # of statuses so far: changes show by it
     status: Status | None
     predicted: Path | None
     odometry: Odometry | None

@@ -137,6 +137,6 @@ def _rounded(value: float) -> str:
 
 
 def surface_text(status: Status) -> str:
-    """Return the surface that is driven on and its probability; nothing where none are remembered."""
+    """Return the surface that is driven on and its probability; an empty string if none are remembered."""
     now = status.surface
     return "" if now is None else f"{surface_name(now.name)}, {100.0 * now.probability:.0f} %"

@@ -103,7 +103,7 @@ class PlainLines:
             self._thread.put(output)
 
     def notices(self) -> list[str]:
-        """What can go wrong is that nobody reads, and nobody would read that either."""
+        """An error here means that the terminal is gone, so there is no place to say it."""
         return []
 
     def close(self) -> None:

@@ -61,7 +61,7 @@ def screen(seen: Seen, size: ConsoleDimensions, headlines: Sequence[str] = ()) -
     top = [_line([(clean(line), "cyan")], width) for line in headlines]
     status = seen.status
     if status is None:
-        top.append(_line([("waiting", "bold yellow"), ("  nothing was heard yet", "")], width))
+        top.append(_line([("waiting", "bold yellow"), ("  no samples yet", "")], width))
         notes = _notes(seen, max(size.height - len(top) - 2, 0), width)
         return Group(*top, *notes)
     top += _head(status, width) + _numbers(seen, status, width)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Serves the page of the live node: read-only, to this machine alone unless told otherwise."""
+"""Serves the page of the live node: read-only, to this machine alone by default."""
 
 from __future__ import annotations
 

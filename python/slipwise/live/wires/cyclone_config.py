@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cyclone DDS confined to this host unless told otherwise; the wires of a process share a domain."""
+"""Cyclone DDS confined to this host by default; the wires of a process share a domain."""
 
 from __future__ import annotations
 

@@ -57,9 +57,9 @@ class CycloneDiscovery:
     def refresh(self) -> bool:
         """Take in what is new; return whether anything was."""
         changed = False
-        while heard := self._reader.take(N=64):
+        while taken := self._reader.take(N=64):
             changed = True
-            for endpoint in heard:
+            for endpoint in taken:
                 key = endpoint.key.bytes
                 if endpoint.sample_info.instance_state == _ALIVE:
                     self._publications[key] = _publication(endpoint)

@@ -75,7 +75,7 @@ class CycloneService:
         return request[:_HEADER] + struct.pack("<Qq", self._client, self._number) + request[_HEADER:]
 
     def _without_number(self, answer: bytes) -> bytes | None:
-        """Return an answer without who asked, or None where somebody else did."""
+        """Return an answer to this client, or None for another's."""
         if not self._numbered:
             return answer
         head = struct.calcsize("<Qq")

@@ -137,7 +137,7 @@ class CycloneWire:
         write_cdr(writer, payload)
 
     def call(self, service: str, type_name: str, request: bytes, *, timeout: float) -> bytes | None:
-        """Call a service; None where nobody answers in time [s].
+        """Call a service; None where no answer comes in time [s].
 
         Answers of Fast DDS say only in a header that Cyclone does not show whose they are: the next answer of
         the service counts.
@@ -169,14 +169,14 @@ class CycloneWire:
     def connections(self, topic: str) -> int:
         """Return how many publishers we hear on a topic, and how many subscriptions hear us."""
         with self._lock:
-            heard = {
+            publishers = {
                 handle
                 for subscription in self._subscriptions
                 if subscription.topic == topic
                 for handle in subscription.reader.get_matched_publications()
             }
             writer = self._writers.get(topic)
-            return len(heard) + (len(writer.get_matched_subscriptions()) if writer is not None else 0)
+            return len(publishers) + (len(writer.get_matched_subscriptions()) if writer is not None else 0)
 
     def notices(self) -> list[str]:
         """Return what is to be said since the last call: topics on which nothing comes, and the ways out."""

@@ -16,7 +16,7 @@ _log = logging.getLogger(__name__)
 
 
 class Delivery:
-    """Callbacks that say what was heard, and outlive what is wrong with a message.
+    """Callbacks that note each message, and survive a wrong one.
 
     Args:
         silence: learns on which topics something came.
@@ -35,7 +35,7 @@ class Delivery:
         def deliver(message: Any) -> None:
             if self.closed.is_set():
                 return
-            self._silence.heard(topic)
+            self._silence.received(topic)
             try:
                 on_message(to_bytes(message))
             except Exception:

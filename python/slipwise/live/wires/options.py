@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every wire is told: the node's name, the domain, and whether other hosts are meant."""
+"""Options of every wire: the node's name, the domain, and whether other hosts are meant."""
 
 from __future__ import annotations
 

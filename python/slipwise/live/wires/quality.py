@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Quality of service: what a subscription may ask for so that every publisher of its topic is heard."""
+"""Quality of service: what a subscription may ask for to match every publisher of its topic."""
 
 from __future__ import annotations
 

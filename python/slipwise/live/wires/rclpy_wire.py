@@ -137,7 +137,7 @@ class RclpyWire:
             self._publishers[topic].publish(payload)
 
     def call(self, service: str, type_name: str, request: bytes, *, timeout: float) -> bytes | None:
-        """Call a service; None where nobody answers in time [s]. A callback of a topic must not call.
+        """Call a service; None where no answer comes in time [s]. A callback of a topic must not call.
 
         Raises:
             SettingsError: there is no such service type, or no such name of a service.
@@ -162,9 +162,11 @@ class RclpyWire:
     def connections(self, topic: str) -> int:
         """Return how many publishers we hear on a topic, and how many subscriptions hear us."""
         with self._lock:
-            heard = [made.entity.get_publisher_count() for made in self._subscriptions if made.topic == topic]
+            publishers = [
+                made.entity.get_publisher_count() for made in self._subscriptions if made.topic == topic
+            ]
             publisher = self._publishers.get(topic)
-            return max(heard, default=0) + (
+            return max(publishers, default=0) + (
                 publisher.get_subscription_count() if publisher is not None else 0
             )
 

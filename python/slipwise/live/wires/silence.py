@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Says once why nothing comes on a topic that somebody publishes."""
+"""Says once why nothing comes on a topic that has a publisher."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _WAYS_OUT = (
 
 @dataclass(frozen=True)
 class PublisherSeen:
-    """Somebody who publishes on a wanted topic, as discovery shows it."""
+    """A publisher of a wanted topic, as discovery shows it."""
 
     vendor: str  # of its middleware, such as "eProsima Fast DDS"
     type: str  # such as "nav_msgs/msg/Odometry"
@@ -29,14 +29,14 @@ class PublisherSeen:
 @dataclass
 class _Wanted:
     type: str
-    heard: bool = False
+    received: bool = False
     since: float | None = None  # when a publisher was first seen
     publisher: PublisherSeen | None = None
     said: bool = False
 
 
 class SilenceWatch:
-    """Keeps, for each wanted topic, whether it was heard and who publishes it; any thread may use it."""
+    """Keeps, for each wanted topic, whether a message came and who publishes it; any thread may use it."""
 
     def __init__(self, now: Callable[[], float] = time.monotonic) -> None:
         self._now = now
@@ -48,11 +48,11 @@ class SilenceWatch:
         with self._lock:
             self._topics.setdefault(topic, _Wanted(type_name))
 
-    def heard(self, topic: str) -> None:
+    def received(self, topic: str) -> None:
         """Take note that a message came."""
         wanted = self._topics.get(topic)
         if wanted is not None:
-            wanted.heard = True
+            wanted.received = True
 
     def seen(self, topic: str, publishers: list[PublisherSeen]) -> None:
         """Take note of who publishes on a topic now."""
@@ -74,7 +74,7 @@ class SilenceWatch:
         with self._lock:
             for topic, wanted in self._topics.items():
                 publisher, since = wanted.publisher, wanted.since
-                if publisher is None or since is None or wanted.heard or wanted.said:
+                if publisher is None or since is None or wanted.received or wanted.said:
                     continue
                 if self._now() - since >= PATIENCE:
                     wanted.said = True

@@ -12,7 +12,7 @@ OnMessage = Callable[[bytes], None]
 
 @dataclass(frozen=True)
 class WireTopic:
-    """A topic that somebody publishes."""
+    """A topic with a publisher."""
 
     name: str  # with its slash, such as "/odom"
     type: str  # such as "nav_msgs/msg/Odometry"

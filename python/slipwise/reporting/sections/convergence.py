@@ -111,7 +111,7 @@ def _parameters(contents: Contents, history: History) -> str:
 
 
 def _smoothed(contents: Contents) -> str:
-    """Draw what the parameters were at each time, given the whole log; nothing where it was not asked for."""
+    """Draw what the parameters were at each time, given the whole log; an empty string if not wanted."""
     course = contents.calibration.smoothed
     if course is None:
         return ""

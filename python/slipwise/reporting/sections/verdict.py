@@ -84,7 +84,7 @@ def _tile(name: str, value: str, beside: str) -> str:
 
 
 def _times(learned: float, plain: float) -> str:
-    """Say how many times larger or smaller the baseline's error is; nothing where that has no meaning."""
+    """Say how many times larger or smaller the baseline's error is; empty if that has no meaning."""
     if not (learned > 0.0 and plain > 0.0 and math.isfinite(learned / plain)):
         return ""
     if plain >= learned:

@@ -41,7 +41,7 @@ def test_nothing_is_said_where_nobody_publishes_or_a_message_came() -> None:
     clock.now += 10.0
     assert silence.notices() == []
     silence.seen("/odom", [REFUSED])
-    silence.heard("/odom")
+    silence.received("/odom")
     clock.now += 10.0
     assert silence.notices() == []
 
@@ -76,6 +76,6 @@ def test_another_type_is_named() -> None:
 def test_topics_that_nobody_wants_are_not_spoken_of() -> None:
     silence, clock = watch()
     silence.seen("/camera", [REFUSED])
-    silence.heard("/camera")
+    silence.received("/camera")
     clock.now += 4.0
     assert silence.notices() == []

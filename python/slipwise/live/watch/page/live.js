@@ -45,7 +45,7 @@
   const OF_APPLY = { off: "nothing (off)", manual: "on request", auto: "by itself" };
   const OF_INPUT = { command: "commands", wheel: "wheels" };
 
-  // ---- what is said
+  // ---- messages
 
   const showAnswer = (status) => {
     put(at("vehicle"), status.vehicle || "a robot");
@@ -380,25 +380,25 @@
   };
 
   let stream = null;
-  let heard = performance.now(); // of anything
+  let latest = performance.now(); // of any message
   let changed = performance.now(); // of a new state
   let retry = null;
   const connect = () => {
     retry = null;
     if (stream) stream.close();
-    heard = performance.now();
+    latest = performance.now();
     stream = new EventSource("events" + location.search);
     stream.addEventListener("state", (event) => {
       const first = newest === null || noted.connection === "lost";
       const before = newest && newest.status ? newest.status.stamp : null;
       newest = JSON.parse(event.data);
-      heard = performance.now();
-      if (first || (newest.status && newest.status.stamp !== before)) changed = heard;
+      latest = performance.now();
+      if (first || (newest.status && newest.status.stamp !== before)) changed = latest;
       watch();
       plan();
     });
     stream.addEventListener("alive", () => {
-      heard = performance.now();
+      latest = performance.now();
       watch();
     });
     stream.addEventListener("error", () => lose());
@@ -413,7 +413,7 @@
   const watch = () => {
     const now = performance.now();
     if (stream === null) return;
-    if (now - heard > SILENCE) {
+    if (now - latest > SILENCE) {
       lose();
     } else if (newest !== null && stream.readyState === EventSource.OPEN) {
       const quiet = newest.status === null || now - changed > QUIET;
