@@ -91,12 +91,12 @@ def processor_time(seconds: float) -> Cost:
             "live",
             "--transport",
             "cyclonedds",
-            "--domain",
-            str(DOMAIN),
+            "--set",
+            f"live.domain={DOMAIN}",
         ]
         topics = ["--command-topic", "/cmd_vel", "--wheel-topic", "/odom", "--pose-topic", "/pose"]
         with subprocess.Popen(
-            [*command, "--domain", str(DOMAIN), *topics, "--cache", folder], stdout=output
+            [*command, "--set", f"live.domain={DOMAIN}", *topics, "--cache", folder], stdout=output
         ) as live:
             try:
                 with publishing(seconds + WARM + 5.0):
@@ -221,7 +221,7 @@ def kills(count: int) -> Kills:
     folder = Path(tempfile.mkdtemp())
     table = LiveTable(cache=str(folder), save_every=SAVES)
     settings = Settings().model_copy(update={"live": table})
-    key = CacheKey.of(table.vehicle, "command", settings)
+    key = CacheKey.of(table.name, "command", settings)
     readable = models = went_on = 0
     oldest = slowest = 0.0
     _live(settings, 180.0)  # so that there is a state, and a valid model

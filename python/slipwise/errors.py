@@ -43,3 +43,7 @@ class PlanningError(SlipwiseError):
 
 class OutputError(SlipwiseError):
     """A result cannot be written."""
+
+
+class OlderNames(FutureWarning):
+    """A settings file has keys under names of an earlier release."""

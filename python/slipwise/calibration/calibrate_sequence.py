@@ -65,7 +65,7 @@ def calibrate_sequence(
         raise SettingsError(
             f"only the estimator {AVERAGE!r} has a memory of surfaces",
             where="--memory",
-            advice="leave --estimator or --memory away",
+            advice="leave out estimator or --memory",
         )
     if start is None:  # what is begun with keeps its terms: nothing is remembered of others
         settings = for_the_ground_of(logs[0], settings)

@@ -68,7 +68,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
     if remember and settings.body_force.learned:
         raise SettingsError(
             "a body force and remembered surfaces are not learned together",
-            advice="leave out --memory, or --body-force",
+            advice="leave out --memory or body_force.frame",
         )
     if remember:
         surfaces = _core.SurfaceSettings()

@@ -50,8 +50,8 @@ class ApplyTable(_Table):
 class LiveTable(_Table):
     """Where samples come from and where results go; the command line goes before it."""
 
-    name: Name = "slipwise"  # of the node
-    vehicle: Annotated[str, Field(min_length=1, max_length=64)] = "robot"
+    name: Annotated[str, Field(min_length=1, max_length=64)] = "robot"  # of the robot
+    node: Name = "slipwise"  # name of the ROS node
     transport: Transports | None = None  # None: the first ROS that is there
     domain: Annotated[int, Field(ge=0, le=232)] | None = None  # None: ROS_DOMAIN_ID, else 0
     network: bool = False  # DDS reaches beyond this host
@@ -65,16 +65,14 @@ class LiveTable(_Table):
     ] = []  # of poses, where there are several: the first first
     model: str | None = None  # start model
     attitude: bool = False  # poses have a true roll and pitch: terms of gravity are tried
-    memory: bool | str = False  # remember surfaces; a model file: begin with those in it
-    terrain: Annotated[str, Field(min_length=1, max_length=80)] | None = None  # name of the first surface
-    terrain_topic: str | None = None  # std_msgs/String: the surface's name, beside ~/terrain
+    memory: bool = False  # remember surfaces, and begin with those of the start model
+    surface: Annotated[str, Field(min_length=1, max_length=80)] | None = None  # name of the first surface
+    surface_topic: str | None = None  # std_msgs/String: the surface's name, beside ~/terrain
     cache: str | None = None  # folder
     save_every: Seconds = 60.0  # s of the wall clock between two times that the cache is written
     moves_every: Annotated[float, Field(ge=0.0, le=1e6)] = 10.0  # s between two looks for moves; 0: none
+    host: str = "127.0.0.1"  # where the web page and Foxglove are served
+    record: str | None = None  # .mcap file of all that the node publishes
+    duration: Seconds | None = None  # s of the wall clock, after which the node stops
     gates: GatesTable = GatesTable()
     apply: ApplyTable = ApplyTable()
-
-    @property
-    def memory_begins(self) -> bool:
-        """Whether a memory begins with the surfaces of a model file."""
-        return isinstance(self.memory, str)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import tomllib
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
@@ -15,7 +16,7 @@ from slipwise import _core
 from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.log_table import LogTable
 from slipwise.calibration.source_tables import PoseSourceTable
-from slipwise.errors import SettingsError
+from slipwise.errors import OlderNames, SettingsError
 from slipwise.files import read_whole
 from slipwise.logs.options import LogOptions
 from slipwise.models.renamed_keys import with_new_keys
@@ -94,6 +95,7 @@ _DRIFTS = {"mean-reverting": _core.Drift.MeanReverting, "random-walk": _core.Dri
 class SmoothingTable(_Section):
     """Smoothing of slip that changes slowly, with the distance driven."""
 
+    smooth: bool = False
     drift: Drift = cast(Drift, {value: name for name, value in _DRIFTS.items()}[_DRIFT.drift])
     length: Positive = _DRIFT.length
 
@@ -289,8 +291,8 @@ class Settings(_Section):
         return _core.Basis("none", [], [], []) if name == "none" else _core.named_basis(name)
 
 
-def load_settings(path: Path) -> Settings:
-    """Read settings from a TOML file.
+def load_settings(path: Path, changes: Mapping[str, Any] | None = None) -> Settings:
+    """Read settings from a TOML file; `changes`, nested dictionaries, go before it.
 
     Raises:
         SettingsError: the file is missing, not TOML, or has an unknown key or a wrong value.
@@ -301,7 +303,18 @@ def load_settings(path: Path) -> Settings:
         raise SettingsError(
             f"not a TOML file: {problem}", where=str(path), advice='write lines like basis = "auto"'
         ) from problem
-    return make_settings(content, where=str(path))
+    return make_settings(merged(content, changes or {}), where=str(path))
+
+
+def merged(content: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return nested dictionaries with the changes in them."""
+    result = dict(content)
+    for key, value in changes.items():
+        inner = result.get(key)
+        if isinstance(inner, dict) and isinstance(value, dict):
+            value = merged(inner, value)
+        result[key] = value
+    return result
 
 
 def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settings:
@@ -317,14 +330,29 @@ def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settin
 
 
 def _with_new_keys(content: dict[str, Any], where: str) -> object:
-    """The same under the names that keys have now; says so where one is old."""
+    """Return the same under the present names of keys; warns of older ones."""
+    live = content.get("live")
+    moved: list[str] = []
+    if isinstance(live, dict) and ("vehicle" in live or isinstance(live.get("memory"), str)):
+        live, moved = _older_live(live)
+        content = content | {"live": live}
     result = with_new_keys(content, RENAMED_SETTINGS)
-    if result != content:
-        old = ", ".join(
-            f"{name} is {new} now" for place, name, new in _RENAMED if name in _table(content, place)
-        )
-        warnings.warn(f"{where}: older names of settings: {old}", FutureWarning, stacklevel=3)
+    moved += [f"{name} is {new} now" for place, name, new in _RENAMED if name in _table(content, place)]
+    if moved:
+        warnings.warn(f"{where}: older names of settings: {', '.join(moved)}", OlderNames, stacklevel=3)
     return result
+
+
+def _older_live(live: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """Return [live] of version 0.2 with present keys, and what moved: there `name` was that of the node."""
+    live, moved = dict(live), []
+    if "vehicle" in live:
+        moved = ["live.vehicle is live.name now", *(["live.name is live.node now"] if "name" in live else [])]
+        live = {{"vehicle": "name", "name": "node"}.get(key, key): value for key, value in live.items()}
+    if isinstance(live.get("memory"), str) and live.get("model", live["memory"]) == live["memory"]:
+        live |= {"model": live["memory"], "memory": True}
+        moved.append("the model of live.memory is live.model now")
+    return live, moved
 
 
 _RENAMED = [(place, old, new) for place, names in RENAMED_SETTINGS.items() for old, new in names.items()]

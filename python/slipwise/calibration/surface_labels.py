@@ -50,12 +50,12 @@ def given_labels(labels: Sequence[str], logs: int) -> tuple[str, ...]:
     """
     if any(not label.strip() or len(label) > LONGEST_NAME for label in labels):
         raise SettingsError(
-            "a label is a name of 1 to 80 characters", where="--terrain", advice="such as --terrain sand"
+            "a label is a name of 1 to 80 characters", where="--surface", advice="such as --surface sand"
         )
     if len(labels) not in (0, 1, logs):
         raise SettingsError(
             f"{len(labels)} labels for {logs} logs",
-            where="--terrain",
+            where="--surface",
             advice="give one for all, or one for each log",
         )
     return tuple(labels) * logs if len(labels) == 1 else tuple(labels)

@@ -32,7 +32,7 @@ def check_labels(labels: Labels, drives: Sequence[Sequence[PreparedRun]]) -> Non
     if not named:
         raise LogError(
             f"the labels are of runs {_some(sorted(labels))}, the logs have {_some([r.name for r in runs])}",
-            where="--terrain",
+            where="--surface",
             advice="name the runs alike in both, in the column `run`",
         )
     for place, run in enumerate(named):
@@ -41,14 +41,14 @@ def check_labels(labels: Labels, drives: Sequence[Sequence[PreparedRun]]) -> Non
             raise LogError(
                 f"run {run.name} was driven from {first:.1f} to {last:.1f} s and its labels are from "
                 f"{windows[0].start:.1f} to {windows[-1].end:.1f} s",
-                where="--terrain",
+                where="--surface",
                 advice="stamp both by one clock",
             )
         for other in named[:place]:
             if other.name == run.name and other.span[0] <= last and first <= other.span[1]:
                 raise LogError(
                     f"two logs have a run {run.name} at the same times, and labels of one",
-                    where="--terrain",
+                    where="--surface",
                     advice="name the runs differently in the column `run`",
                 )
 

@@ -10,8 +10,7 @@ import typer
 
 from slipwise.cli.options import (
     Basis,
-    BodyForce,
-    Estimator,
+    Changes,
     Input,
     Json,
     Labels,
@@ -42,28 +41,19 @@ def calibrate(
     input_name: Input = None,
     basis: Basis = None,
     settings: SettingsFile = None,
-    estimator: Estimator = None,
-    body_force: BodyForce = None,
-    smooth: Annotated[
-        bool,
-        typer.Option(
-            "--smooth",
-            help="Also smooth over the whole log (RTS), for slip that changes slowly: smoothed.csv in the "
-            "run folder, and figures in the report. Settings: [smoothing].",
-        ),
-    ] = False,
+    changes: Changes = None,
     memory: Annotated[
         bool,
         typer.Option(
             "--memory",
-            help="The logs are drives of one robot in the order of time: surfaces are remembered, recalled "
-            "and kept in the model file. Learning goes on from a model file (.yaml) before them.",
+            help="The logs are drives of one robot in the order of time: remember surfaces, recall them and "
+            "keep them in the model file. A model file (.yaml) before the logs is continued.",
         ),
     ] = False,
-    terrain: Labels = None,
+    surface: Labels = None,
     prior: Annotated[
         Path | None,
-        optional("FLEET.yaml", "Begin with what a fleet knows of this type of robot (`slipwise fleet`)."),
+        optional("FLEET.yaml", "Start from what `slipwise fleet` learned of this type of robot."),
     ] = None,
     report: Report = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no HTML report.")] = False,
@@ -81,12 +71,12 @@ def calibrate(
       slipwise calibrate drive.mcap -o model.yaml
       slipwise calibrate drive.mcap --pose-topic /rtk/odom --input command
       slipwise calibrate monday.csv tuesday.csv.gz --basis odd-even-10 --no-report
-      slipwise calibrate drive.csv --estimator delayed-state --basis drive-5 --smooth
-      slipwise calibrate towing.mcap --body-force body
+      slipwise calibrate drive.csv --basis drive-5 --set estimator=delayed-state --set smoothing.smooth=true
+      slipwise calibrate towing.mcap --set body_force.frame=body
       slipwise calibrate two_minutes.mcap --prior fleet/fleet.yaml
       slipwise calibrate --memory sand.csv asphalt.csv -o monday.yaml
-      slipwise calibrate --memory monday.yaml tuesday.csv -o tuesday.yaml --terrain sand
-      slipwise calibrate --memory sand.csv asphalt.csv --terrain labels.csv -o monday.yaml
+      slipwise calibrate --memory monday.yaml tuesday.csv -o tuesday.yaml --surface sand
+      slipwise calibrate --memory sand.csv asphalt.csv --surface labels.csv -o monday.yaml
       slipwise calibrate drive.csv --no-report --json - | jq .verdict
     """  # noqa: D301
     from slipwise.cli.command_line import command_line
@@ -101,18 +91,16 @@ def calibrate(
     from slipwise.reporting.session import report_calibration
 
     out = Output(json)
-    named = settings or basis or estimator or body_force
-    chosen = chosen_settings(settings, basis, estimator, body_force) if named or not memory else None
-    read = (*logs, *log_options.files, settings, prior, *label_files(terrain))
+    chosen = chosen_settings(settings, changes, basis) if settings or changes or basis or not memory else None
+    read = (*logs, *log_options.files, settings, prior, *label_files(surface))
     refuse_unwritable(output, report, out.written_file, inputs=read)
     asked = Asked(
         logs,
         log_options,
         input_name and input_name.value,
         chosen,
-        smooth,
         memory,
-        tuple(terrain or ()),
+        tuple(surface or ()),
         prior,
     )
     with progress_bar("reading") as update:

@@ -10,6 +10,7 @@ import typer
 
 from slipwise.cli.options import (
     Basis,
+    Changes,
     Input,
     Json,
     Labels,
@@ -64,13 +65,14 @@ def evaluate(
         bool,
         typer.Option(
             "--memory",
-            help="The logs are drives of one robot in the order of time: surfaces are remembered from one to "
-            "the next, and recalled. --model is the model whose surfaces are known before.",
+            help="The logs are drives of one robot in the order of time: remember surfaces from one to the "
+            "next, and recall them. --model gives the surfaces of earlier drives.",
         ),
     ] = False,
-    terrain: Labels = None,
+    surface: Labels = None,
     basis: Basis = None,
     settings: SettingsFile = None,
+    changes: Changes = None,
     report: Report = None,
     runs: Runs = Path("runs"),
     json: Json = None,
@@ -92,7 +94,7 @@ def evaluate(
       slipwise evaluate drive.csv --methods surface-least-squares,surface-bayesian,auto
       slipwise evaluate drive.csv --vendor-wheel-separation-multiplier 1.875 --predictions predictions.csv
       slipwise evaluate --memory sand.csv asphalt.csv sand2.csv --predictions predictions.csv
-      slipwise evaluate --memory --model monday.yaml tuesday.csv --terrain sand
+      slipwise evaluate --memory --model monday.yaml tuesday.csv --surface sand
       slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
     """  # noqa: D301
     from slipwise.cli.evaluation_verdict import verdict_on
@@ -107,22 +109,22 @@ def evaluate(
     from slipwise.logs import open_log
 
     out = Output(json)
-    chosen = chosen_settings(settings, basis)
+    chosen = chosen_settings(settings, changes, basis)
     options, models = (
         _options(horizons, methods, vendor_wheel_separation_multiplier, model or []),
         model or [],
     )
-    read = (*logs, *log_options.files, *models, settings, *label_files(terrain))
+    read = (*logs, *log_options.files, *models, settings, *label_files(surface))
     refuse_unwritable(predictions, report, out.written_file, inputs=read)
     if memory:
         from slipwise.cli.evaluate_memory import MemoryQuestion, evaluate_memory
 
-        begin = sequence_options(models, terrain, logs)
+        begin = sequence_options(models, surface, logs)
         asked = MemoryQuestion(
             logs, log_options, input_name and input_name.value, options, begin, predictions, report
         )
         return evaluate_memory(out, asked, chosen, runs)
-    refuse_labels(terrain)
+    refuse_labels(surface)
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         with run_folder(runs, "evaluate") as folder:

@@ -25,23 +25,23 @@ def fleet(
         ),
     ],
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="DIR", help="Where rows, page and prior are kept.")
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Folder for rows, page and prior.")
     ] = Path("fleet"),
-    vehicle: Annotated[
-        str, typer.Option(metavar="NAME", help="Of all logs; by default the folder a log lies in.")
+    name: Annotated[
+        str, typer.Option(metavar="NAME", help="Name of the robot of all logs; default: the folder of a log.")
     ] = "",
     vehicle_type: Annotated[
-        str, typer.Option("--type", metavar="NAME", help="Of all vehicles; stands in the prior.")
+        str, typer.Option("--type", metavar="NAME", help="Type of all robots, for the prior.")
     ] = "",
     settings: SettingsFile = None,
-    workers: Annotated[int | None, optional("N", "Processes; by default one per processor.")] = None,
+    workers: Annotated[int | None, optional("N", "Number of processes; default: one per processor.")] = None,
     scheduler: Annotated[
         str | None,
-        optional("ADDRESS", "Of a Dask cluster (tcp://host:8786) in place of processes."),
+        optional("ADDRESS", "A Dask cluster (tcp://host:8786) in place of processes."),
     ] = None,
     json: Json = None,
 ) -> int:
-    """Learn every log, keep a row per log and parameter, and say what the fleet knows and what stands out.
+    """Learn every log, keep a row per log and parameter, and show what the robots share and what stands out.
 
     DIR/rows is a Parquet data set by vehicle and month; DIR/fleet.html shows vehicles side by side, drift and
     odd ones; DIR/fleet.yaml is the prior of the next robot, for `slipwise calibrate --prior`. A second
@@ -66,7 +66,7 @@ def fleet(
     out = Output(json)
     files = {"page": output / "fleet.html", "prior": output / "fleet.yaml"}
     refuse_unwritable(*files.values(), out.written_file, inputs=[settings])
-    found = find_logs(logs, vehicle=vehicle)
+    found = find_logs(logs, vehicle=name)
     store = Store(output)
     _check_settings(settings)
     mended = store.mend()

@@ -11,6 +11,7 @@ import typer
 
 from slipwise.cli.options import (
     Basis,
+    Changes,
     Json,
     Logs,
     SettingsFile,
@@ -34,6 +35,7 @@ def inspect(
     log_options: LogOptions,
     basis: Basis = None,
     settings: SettingsFile = None,
+    changes: Changes = None,
     strict: Annotated[
         bool, typer.Option("--strict", help="Check that a shared log keeps to the standard format.")
     ] = False,
@@ -69,7 +71,7 @@ def inspect(
     from slipwise.inspection import inspect_files
 
     out = Output(json)
-    chosen = chosen_settings(settings, basis)
+    chosen = chosen_settings(settings, changes, basis)
     refuse_unwritable(out.written_file, excite, inputs=(*logs, *log_options.files, settings))
     if strict:
         return _check_strictly(out, logs)

@@ -22,10 +22,14 @@ class Asked:
     log_options: LogOptions
     input: str | None
     settings: Settings | None  # None: those of the model to go on from, or the defaults
-    smooth: bool
     memory: bool  # of surfaces
     labels: Sequence[str]
     prior: Path | None = None  # what a fleet knows
+
+    @property
+    def smooth(self) -> bool:
+        """Whether the settings ask for smoothing over the whole log."""
+        return self.settings is not None and self.settings.smoothing.smooth
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,14 +69,16 @@ def opened(asked: Asked) -> Opened:
         raise SettingsError(
             "a fleet's prior is of one log on one surface",
             where="--prior",
-            advice=f"leave {'--memory' if asked.memory else '--smooth'} or --prior away",
+            advice=f"leave {'--memory' if asked.memory else 'smoothing.smooth'} or --prior away",
         )
     if not asked.memory:
         refuse_labels(asked.labels)
         return Opened(asked, (), (), open_log(*asked.paths, options=asked.log_options), None)
     if asked.smooth:
         raise SettingsError(
-            "smoothing is over one surface", where="--smooth", advice="leave --smooth or --memory away"
+            "smoothing is over one surface",
+            where="smoothing.smooth",
+            advice="leave one away",
         )
     models, paths = split_model(asked.paths)
     begin = sequence_options(models, asked.labels, paths)

@@ -12,12 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Protocol
 
 import typer
 
-from slipwise.cli.memory_options import BEGIN_WITH_NOTHING
 from slipwise.cli.options import (
-    Basis,
-    BodyForce,
+    Changes,
     Input,
-    Seed,
     SettingsFile,
     chosen_settings,
     optional,
@@ -37,79 +34,58 @@ def live(
         str | None,
         optional(
             "NAME",
-            "ros (the default: rclpy, or cyclonedds where there is no rclpy), one of these, stdin or udp.",
+            "ros (default: rclpy, else cyclonedds), rclpy, cyclonedds, stdin or udp.",
         ),
     ] = None,
-    replay: Annotated[Path | None, optional("LOG", "Take the samples of a log.")] = None,
-    rate: Annotated[float, typer.Option(metavar="TIMES", help="Speed of --replay; 0: no waits.")] = 1.0,
+    replay: Annotated[Path | None, optional("LOG", "Replay a log in place of a robot.")] = None,
+    rate: Annotated[
+        float, typer.Option(metavar="TIMES", help="Speed of --replay; 0: as fast as it goes.")
+    ] = 1.0,
     demo: Annotated[
         bool,
         typer.Option("--demo", help="Drive a simulated robot through a slalom whose floor changes (MuJoCo)."),
     ] = False,
-    seed: Seed = 1,
     input_name: Input = None,
-    basis: Basis = None,
-    body_force: BodyForce = None,
     settings: SettingsFile = None,
-    name: Annotated[str | None, optional("NAME", "Of the node; default slipwise.")] = None,
-    vehicle: Annotated[str | None, optional("NAME", "Whose model it is; the cache goes by it.")] = None,
-    domain: Annotated[int | None, optional("N", "ROS domain; default ROS_DOMAIN_ID, else 0.")] = None,
-    network: Annotated[bool, typer.Option("--network", help="Reach beyond this host.")] = False,
-    address: Annotated[str | None, optional("HOST:PORT", "Where --transport udp listens.")] = None,
-    override_topic: Annotated[
-        str | None,
-        optional("TOPIC", "std_msgs/Bool, true while an operator drives past the commands."),
+    changes: Changes = None,
+    name: Annotated[
+        str | None, optional("NAME", "Name of the robot; the cache keeps each robot apart. Default robot.")
     ] = None,
     model: Annotated[
-        Path | None, optional("MODEL", "What others get until something valid is learned.", "--model")
+        Path | None, optional("MODEL", "Use this model until a better one is learned.", "--model")
     ] = None,
     memory: Annotated[
-        str | None,
-        optional(
-            "[MODEL.yaml]",
-            "Remember surfaces, and recall them; begin with those of a model file.",
-        ),
+        bool,
+        typer.Option("--memory", help="Remember surfaces and recall them, those of --model included."),
+    ] = False,
+    cache: Annotated[
+        Path | None, optional("DIR", "Keep what was learned here, and continue from it at the next start.")
     ] = None,
-    terrain: Annotated[
-        str | None, optional("LABEL", "With --memory: name of the surface at the start.")
-    ] = None,
-    terrain_topic: Annotated[
-        str | None,
-        optional("TOPIC", "With --memory: std_msgs/String with the surface's name, beside ~/terrain."),
-    ] = None,
-    cache: Annotated[Path | None, optional("DIR", "Keep here what was learned.")] = None,
     output: Annotated[
         Path | None, optional("MODEL.yaml", "Write the model here at the end.", "-o", "--output")
     ] = None,
-    apply: Annotated[
-        str | None, optional("MODE", "Hand parameters on: off (the default), manual or auto.")
-    ] = None,
     results: Annotated[
-        Path | None, optional("FILE", "stdin: write results as JSON lines; - is standard output.")
+        Path | None,
+        optional("FILE", "With --transport stdin: write results here as JSON lines; - is standard output."),
     ] = None,
-    web: Annotated[int | None, optional("PORT", "Serve a page to watch; without a port 8088.")] = None,
+    web: Annotated[int | None, optional("PORT", "Serve a web page; default port 8088.")] = None,
     foxglove: Annotated[
-        int | None, optional("PORT", "Serve Foxglove and Lichtblick; without a port 8765.")
+        int | None, optional("PORT", "Serve Foxglove and Lichtblick; default port 8765.")
     ] = None,
-    host: Annotated[str, typer.Option(metavar="HOST", help="Where these two listen.")] = "127.0.0.1",
-    record: Annotated[Path | None, optional("FILE.mcap", "Record all that the node gives.")] = None,
-    duration: Annotated[
-        float | None, optional("SECONDS", "Stop after this time of the wall clock.", "--for")
-    ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show nothing but errors.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
 ) -> int:
-    """Learn while the robot drives, and tell planners, odometry and people.
+    """Learn while the robot drives, and publish what is learned.
 
-    Hears commands, wheel speeds and poses, and gives odometry with learned slip, the path ahead, the model
-    and its validity below the node's name. Ctrl-C or SIGTERM ends it, with the cache written. All of this
-    can stand in a settings file, under [live].
+    Reads commands, wheel speeds and poses; publishes odometry with learned slip, the path ahead, the model
+    and its validity below the node's name. Ctrl-C or SIGTERM ends it and writes the cache. Settings: [live],
+    such as apply, domain, network, record, duration.
 
     \b
     Examples:
-      slipwise live --pose-topic /rtk/odom --cache ~/.slipwise --vehicle husky-1
-      slipwise live --transport cyclonedds --web --apply auto --settings live.toml
+      slipwise live --pose-topic /rtk/odom --cache ~/.slipwise --name husky-1
+      slipwise live --transport cyclonedds --web --set live.apply.mode=auto
       slipwise live --replay drive.mcap --rate 10 --web
-      slipwise live --memory monday.yaml --terrain-topic /terrain/label -o tuesday.yaml
+      slipwise live --memory --model monday.yaml -o tuesday.yaml
       slipwise live --demo --web
       robot-log | slipwise live --transport stdin --results -
     """  # noqa: D301
@@ -126,20 +102,23 @@ def live(
     from slipwise.live.build import build_node
 
     given = {
-        "transport": transport, "name": name, "vehicle": vehicle, "domain": domain, "address": address,
-        "network": network or None, "override_topic": override_topic, "model": model and str(model),
-        "memory": memory and (memory == BEGIN_WITH_NOTHING or memory), "terrain": terrain,
-        "terrain_topic": terrain_topic,
-        "cache": cache and str(cache), "input": input_name and input_name.value, "apply": apply,
+        "transport": transport, "name": name, "model": model and str(model), "memory": memory or None,
+        "cache": cache and str(cache), "input": input_name and input_name.value,
     }  # fmt: skip
-    chosen = live_settings(chosen_settings(settings, basis, body_force=body_force), given)
-    chosen = with_memory(chosen, chosen=bool(settings or basis or body_force))
-    begun = Path(chosen.live.memory) if isinstance(chosen.live.memory, str) else None
+    chosen = live_settings(chosen_settings(settings, changes), given)
+    chosen = with_memory(chosen)
+    table = chosen.live
+    record, start = (None if path is None else Path(path) for path in (table.record, table.model))
     to_file = None if results is None or str(results) == "-" else results
-    refuse_unwritable(output, record, to_file, inputs=(replay, settings, model, begun, *log_options.files))
-    shown = Shown(quiet or (results is not None and str(results) == "-"), web, foxglove, host, record)
+    refuse_unwritable(
+        output,
+        record,
+        to_file,
+        inputs=(replay, settings, start, *log_options.files),
+    )
+    shown = Shown(quiet or (results is not None and str(results) == "-"), web, foxglove)
     with stopped_by_signals() as stopping:
-        source = Source(replay, demo, seed, rate, results)
+        source = Source(replay, demo, rate, results)
         robot = open_robot(chosen, log_options, source, say=shown.say)
         if robot.positions:
             chosen = live_settings(chosen, {"positions": True})
@@ -161,8 +140,8 @@ def live(
         if robot.log is not None:
             built.learning.learner.know_log(robot.log)
         stopping.node = built.node
-        if duration is not None:
-            timer = threading.Timer(duration, built.node.stop)
+        if table.duration is not None:
+            timer = threading.Timer(table.duration, built.node.stop)
             timer.daemon = True
             timer.start()
         built.node.run()
@@ -175,10 +154,8 @@ def live(
 class Shown:
     """What the user sees, and where."""
 
-    def __init__(
-        self, quiet: bool, web: int | None, foxglove: int | None, host: str, record: Path | None
-    ) -> None:
-        self.quiet, self.web, self.foxglove, self.host, self.record = quiet, web, foxglove, host, record
+    def __init__(self, quiet: bool, web: int | None, foxglove: int | None) -> None:
+        self.quiet, self.web, self.foxglove = quiet, web, foxglove
 
     def say(self, text: str) -> None:
         """Print a line."""

@@ -42,7 +42,6 @@ class Source:
 
     replay: Path | None
     demo: bool
-    seed: int
     rate: float  # times real time
     results: Path | None
 
@@ -53,8 +52,6 @@ class Show(Protocol):
     quiet: bool
     web: int | None
     foxglove: int | None
-    host: str
-    record: Path | None
 
     def say(self, text: str) -> None:
         """Print a line."""
@@ -84,39 +81,40 @@ def live_settings(settings: Settings, given: Mapping[str, Any]) -> Settings:
     return settings.model_copy(update={"live": table})
 
 
-def with_memory(settings: Settings, *, chosen: bool) -> Settings:
-    """Return the settings with which a memory of surfaces goes on.
+def with_memory(settings: Settings) -> Settings:
+    """Return the settings with which a memory of surfaces is continued.
 
-    Without chosen settings (`chosen`), they are those of the model that is begun with. A start
-    model that remembers surfaces is begun with, too.
+    They are those of the model that it is continued from, unless other settings of learning are given.
 
     Raises:
         ModelError: the model cannot be read.
-        SettingsError: there are labels, but no memory.
+        SettingsError: a surface is named, but none is remembered.
     """
     from slipwise.calibration.calibrate_sequence import settings_of
     from slipwise.cli.memory_options import refuse_labels
-    from slipwise.live.model_file import model_in
+    from slipwise.live.model_file import surfaces_before
 
     table = settings.live
     if not table.memory:
-        refuse_labels([label for label in (table.terrain, table.terrain_topic) if label])
+        refuse_labels([label for label in (table.surface, table.surface_topic) if label])
         return settings
-    if table.memory is True and table.model is not None and model_in(table.model).content.surfaces:
-        table = table.model_copy(update={"memory": table.model})
-    if isinstance(table.memory, str) and not chosen:
-        settings = settings_of(model_in(table.memory))
-    return settings.model_copy(update={"live": table})
+    before = surfaces_before(table)
+    defaults = type(settings)().model_dump(exclude={"log"})
+    if before is None or settings.model_dump(exclude={"log"}) != defaults:
+        return settings
+    return settings_of(before).model_copy(update={"live": table})
 
 
 def for_the_ground(settings: Settings, log: Log | None) -> Settings:
     """Return the settings with terms of gravity where a log with an attitude is replayed.
 
-    What is begun with keeps its terms: nothing is remembered of others.
+    A memory that is continued keeps its terms, and gets no others.
     """
     from slipwise.calibration.sloping_ground import for_the_ground_of
+    from slipwise.live.model_file import surfaces_before
 
-    return settings if log is None or settings.live.memory_begins else for_the_ground_of(log, settings)
+    continued = surfaces_before(settings.live) is not None
+    return settings if log is None or continued else for_the_ground_of(log, settings)
 
 
 def open_robot(
@@ -135,7 +133,7 @@ def open_robot(
     if source.demo:
         from slipwise.plugins import ROBOTS, load
 
-        return Robot(load(ROBOTS, "demo")(seed=source.seed, rate=source.rate), "command", "the slalom")
+        return Robot(load(ROBOTS, "demo")(rate=source.rate), "command", "the slalom")
     if source.replay is not None:
         return _replayed(table, options, source.replay, source.rate)
     if table.transport == "stdin":
@@ -162,7 +160,7 @@ def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) 
 
     log = open_log(replay, options=options)
     input_name = table.input or choose_input(log)
-    replayed = Replay(log, input_name, rate=rate, label=table.terrain)
+    replayed = Replay(log, input_name, rate=rate, label=table.surface)
     alone = gyro_alone(log.runs)
     return Robot(replayed, input_name, None, log, has_course(log.runs), replayed.sources, alone)
 
@@ -175,19 +173,19 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
 
     if table.address is not None:
         raise SettingsError("only UDP listens at an address", where="address", advice="give --transport udp")
-    named = WireOptions(node_name=table.name, domain=table.domain, network=table.network)
+    named = WireOptions(node_name=table.node, domain=table.domain, network=table.network)
     wire = make_wire(None if table.transport in (None, "ros") else table.transport, named)
     try:
-        roles = find_roles(wire, options, say, own=f"/{table.name}")
+        roles = find_roles(wire, options, say, own=f"/{table.node}")
         roles = with_oriented_imu(wire, roles, say)
         for note in roles.guessed:
             say(note)
         input_name = table.input or ("command" if roles.command is not None else "wheel")
-        say(f"learning from {input_name}s; the node is /{table.name}")
+        say(f"learning from {input_name}s; the node is /{table.node}")
         if only_positions(roles):
             say("satellite fixes without an IMU: positions only, headings are courses of the path")
-        cues = CueTopics(table.override_topic, table.terrain_topic)
-        transport = RosTransport(wire, roles, options, name=table.name, cues=cues)
+        cues = CueTopics(table.override_topic, table.surface_topic)
+        transport = RosTransport(wire, roles, options, name=table.node, cues=cues)
     except BaseException:
         wire.close()
         raise
@@ -224,21 +222,21 @@ def watchers_for(show: Show, table: LiveTable) -> list[Watcher]:
         if show.web is not None:
             from slipwise.live.watch.web_page import WebPage
 
-            page = WebPage(host=show.host, port=show.web)
+            page = WebPage(host=table.host, port=show.web)
             undo.callback(page.close)
             found.append(page)
             headlines.append(f"page: {page.url}")
         if show.foxglove is not None:
             from slipwise.live.watch.foxglove_server import FoxgloveServer
 
-            server = FoxgloveServer(host=show.host, port=show.foxglove, name=table.name)
+            server = FoxgloveServer(host=table.host, port=show.foxglove, name=table.node)
             undo.callback(server.close)
             found.append(server)
             headlines.append(f"Foxglove, Lichtblick: {server.url}")
-        if show.record is not None:
+        if table.record is not None:
             from slipwise.live.watch.recorder import Recorder
 
-            found.append(Recorder(show.record, name=table.name))
+            found.append(Recorder(Path(table.record), name=table.node))
             undo.callback(found[-1].close)
         found.append(ErrorLines(_complain) if show.quiet else _terminal(show, headlines))
         undo.pop_all()

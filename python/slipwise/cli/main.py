@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import sys
-import warnings
 from collections.abc import Sequence
 from typing import Annotated
 
@@ -18,10 +17,11 @@ from slipwise.cli.evaluate import evaluate
 from slipwise.cli.excite import excite
 from slipwise.cli.export import export
 from slipwise.cli.fleet import fleet
+from slipwise.cli.help_pages import GroupedCommands
 from slipwise.cli.inspect import inspect
 from slipwise.cli.lattice import lattice
 from slipwise.cli.live import live
-from slipwise.cli.memory_options import BEGIN_WITH_NOTHING, MODEL_ENDINGS
+from slipwise.cli.older_names import notes_of_older_names, with_new_names, with_ports
 from slipwise.cli.plan import plan
 from slipwise.cli.score import score
 from slipwise.cli.show import show
@@ -30,44 +30,36 @@ from slipwise.cli.terrain import terrain
 from slipwise.plugins import COMMANDS, added, refuse_missing
 
 DEBUG = "--debug"
-#: Options that have another name since version 0.2; scripts that use the older one get a note, and go on.
-RENAMED = {
-    "--track": "--wheel-separation",
-    "--vendor-track-multiplier": "--vendor-wheel-separation-multiplier",
-}
-
-#: Ports of `slipwise live`, where an option of a server comes without one.
-PORTS = {"--web": "8088", "--foxglove": "8765"}
-
 app = typer.Typer(
     name="slipwise",
+    cls=GroupedCommands,
     add_completion=False,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 _COMMANDS = (
-    (inspect, "Say what is in a log and what can be learned."),
+    (inspect, "Show what is in a log and what can be learned from it."),
     (calibrate, "Learn a motion model from logs."),
-    (live, "Learn while the robot drives."),
-    (evaluate, "Compare methods on logs, honestly."),
-    (score, "Score any method's prediction file on a log."),
-    (fleet, "Learn many logs of many robots, and say what stands out."),
-    (show, "Say what a model has learned."),
-    (compare, "Say what differs between two models."),
+    (evaluate, "Compare methods on logs that they have not seen."),
+    (show, "Show what a model has learned."),
+    (compare, "Test whether a new model predicts better than an old one."),
+    (excite, "Find the drive that teaches most, inside an area."),
     (export, "Write a model into files for other tools."),
+    (live, "Learn while the robot drives."),
     (plan, "Plan a route through a map with a learned model."),
     (lattice, "Write primitives that the robot can drive, for Nav2."),
-    (excite, "Find the drive that teaches most, inside an area."),
     (convert, "Write logs as a tidy table or as MCAP."),
+    (score, "Score any method's prediction file on a log."),
+    (fleet, "Learn many logs of many robots, and show what stands out."),
 )
 for _command, _summary in _COMMANDS:
     app.command(_command.__name__, short_help=_summary)(_command)
 for _name, _entry in added(COMMANDS).items():
     _module = _entry.load()
     app.command(_name, short_help=_module.SUMMARY)(getattr(_module, _name))
-app.add_typer(surfaces, name="surfaces", short_help="Join and name the surfaces that models remember.")
-app.add_typer(terrain, name="terrain", short_help="Name the surface by vibration and motor currents.")
+app.add_typer(surfaces, name="surfaces", short_help="Merge and name the surfaces that models remember.")
+app.add_typer(terrain, name="terrain", short_help="Classify the surface by vibration and motor currents.")
 
 
 def _show_version(asked: bool) -> None:
@@ -87,8 +79,8 @@ def _slipwise(
 ) -> None:
     """Learn a robot's motion model - slip, lag, delay, uncertainty - from its commands and where it went.
 
-    Exit codes: 0 success, 1 the answer is "not good enough", 2 bad input or use. demo, calibrate, evaluate
-    and reproduce keep each run in runs/<UTC time>-<command>; runs/latest is the last one.
+    Exit codes: 0 good, 1 not good enough, 2 bad input or use. demo, calibrate, evaluate and reproduce keep
+    each run in runs/<UTC time>-<command>; runs/latest is the last one.
 
     \b
     Examples:
@@ -109,40 +101,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def run(arguments: Sequence[str]) -> int:
     """Run one command; return its exit code: 0 success, 1 not good enough, 2 bad input or use."""
     plain = [argument for argument in arguments if argument != DEBUG] or ["--help"]
-    return exit_code_of(lambda: _invoke(_with_new_names(with_ports(plain))), debug=DEBUG in arguments)
-
-
-def with_ports(arguments: list[str]) -> list[str]:
-    """The same with what options stand for that come without a value: ports, and a live memory's model."""
-    result = []
-    live = arguments[:1] == ["live"]  # elsewhere --memory takes no value
-    for argument, after in zip(arguments, [*arguments[1:], ""], strict=True):
-        result.append(argument)
-        if argument in PORTS and not after.isdigit():
-            result.append(PORTS[argument])
-        if live and argument == "--memory" and not after.lower().endswith(MODEL_ENDINGS):
-            result.append(BEGIN_WITH_NOTHING)
-    return result
-
-
-def _with_new_names(arguments: list[str]) -> list[str]:
-    """The same with options under the names they have now; says so where one is old."""
-    result = []
-    for argument in arguments:
-        name, equals, value = argument.partition("=")
-        if name in RENAMED:
-            print(f"note: {name} is called {RENAMED[name]} now", file=sys.stderr)
-        result.append(RENAMED.get(name, name) + equals + value)
-    return result
+    return exit_code_of(lambda: _invoke(with_ports(with_new_names(plain))), debug=DEBUG in arguments)
 
 
 def _invoke(arguments: list[str]) -> int:
-    warnings.simplefilter(
-        "ignore", FutureWarning
-    )  # older names of settings; the run's folder has the new ones
     refuse_missing(COMMANDS, arguments[0])
     command = typer.main.get_command(app)
-    with command.make_context("slipwise", arguments) as context:
+    with notes_of_older_names(), command.make_context("slipwise", arguments) as context:
         return int(command.invoke(context) or 0)
 
 

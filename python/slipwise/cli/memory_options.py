@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from slipwise.calibration.learned_sequence import SequenceOptions
 
 MODEL_ENDINGS = (".yaml", ".yml")
-BEGIN_WITH_NOTHING = "nothing"  # what `slipwise live --memory` stands for without a model file
 
 
 def split_model(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
@@ -43,13 +42,13 @@ def sequence_options(
             advice="join their surfaces first: slipwise surfaces merge A.yaml B.yaml -o C.yaml",
         )
     if not logs:
-        raise SettingsError("no log was given", where="--memory", advice="give logs in the order of time")
+        raise SettingsError("no log given", where="--memory", advice="give logs in the order of time")
     start = load_model(models[0]) if models else None
     files = label_files(labels)
     if files and len(files) < len(labels or ()):
         raise SettingsError(
-            "surfaces are named by names and by tables of labels",
-            where="--terrain",
+            "names and tables of surfaces cannot be mixed",
+            where="--surface",
             advice="give names or tables",
         )
     if files:
@@ -74,5 +73,5 @@ def refuse_labels(labels: Sequence[str] | None) -> None:
 
     if labels:
         raise SettingsError(
-            "a label names a surface that is remembered", where="--terrain", advice="add --memory"
+            "only a memory of surfaces uses the name of a surface", where="--surface", advice="add --memory"
         )

@@ -3,14 +3,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from slipwise.cli.help_pages import show_options
+from slipwise.cli.older_names import RENAMED
+from slipwise.log_fields import LOG_FIELDS, About, Kind
 
 if TYPE_CHECKING:
     from slipwise.calibration import Settings
@@ -18,13 +23,6 @@ if TYPE_CHECKING:
 
 
 GRADE_HELP = "Ground that falls by SLOPE towards DOWNHILL, both in degrees, 0 along x."
-
-
-class ForceFrame(StrEnum):
-    """What a force that is learned beside slip stays fixed to."""
-
-    body = "body"
-    world = "world"
 
 
 class InputName(StrEnum):
@@ -52,31 +50,18 @@ Input = Annotated[
     typer.Option(
         "--input",
         show_default=False,
-        help="Learn from commands or from wheel speeds; commands if the log has them.",
+        help="Learn from commands or wheel speeds; default: commands where the log has them.",
     ),
 ]
 Basis = Annotated[
     str | None,
     optional("NAME", "Slip basis, such as edd-2 or odd-even-10; default auto, an average of several."),
 ]
-Estimator = Annotated[
-    str | None,
-    optional(
-        "NAME",
-        "How to learn: average (the default, weighs bases by how well they predict), iekf, "
-        "delayed-state, ekf-thesis, gradient-descent; batch fits all windows at once, off-line.",
-    ),
+SettingsFile = Annotated[Path | None, optional("FILE.toml", "Read settings from this file.", "--settings")]
+Changes = Annotated[
+    list[str] | None,
+    optional("KEY=VALUE", "Change one setting, such as filter.huber=3. Repeat it for others.", "--set"),
 ]
-BodyForce = Annotated[
-    ForceFrame | None,
-    typer.Option(
-        "--body-force",
-        show_default=False,
-        help="Also learn a force beside slip: fixed to the robot (body: a towed load, a stuck wheel) or to "
-        "the map (world: wind). Settings: [body_force].",
-    ),
-]
-SettingsFile = Annotated[Path | None, optional("FILE.toml", "Settings of learning.", "--settings")]
 Report = Annotated[Path | None, optional("FILE.html", "Write the HTML report to this file.")]
 Json = Annotated[
     Path | None, optional("FILE", "Write the result as JSON; `-` prints it instead of tables.", "--json")
@@ -88,178 +73,148 @@ ModelFile = Annotated[Path, typer.Argument(metavar="MODEL", show_default=False, 
 Labels = Annotated[
     list[str] | None,
     optional(
-        "LABEL",
-        "With --memory: the surface of all logs, or given once for each, or a table (.csv) of labels by run "
-        "and time as `slipwise terrain classify` writes it; else the column `terrain` says it.",
-        "--terrain",
+        "NAME",
+        "With --memory: the surface of all logs; repeat it to name that of each log; or a table (.csv) of "
+        "surfaces by run and time from `slipwise terrain classify`. Default: the column `terrain`.",
+        "--surface",
     ),
 ]
 Duration = Annotated[float, typer.Option(metavar="SECONDS", help="How long to drive.")]
 Seed = Annotated[int, typer.Option(metavar="N", help="Of the drive and of the pose noise.")]
 Runs = Annotated[Path, typer.Option(metavar="DIR", help="Where run folders are kept.")]
 
-_LOG_OPTIONS: dict[str, tuple[Any, str, str]] = {
-    "pose_topic": (
-        list[str],
-        "TOPIC",
-        "Measured pose: Odometry, Pose[WithCovariance]Stamped, NavSatFix, TFMessage. Again for others.",
-    ),
-    "command_topic": (
-        str,
-        "TOPIC",
-        "Commands: Twist, TwistStamped, AckermannDriveStamped; none: do not read any.",
-    ),
-    "wheel_topic": (
-        str,
-        "TOPIC",
-        "Wheel odometry: Odometry (its twist) or JointState; none: do not read any.",
-    ),
-    "imu_topic": (
-        str,
-        "TOPIC",
-        "Imu: orientation or yaw rate beside a NavSatFix, tilt beside poses; alone with --pose-topic none.",
-    ),
-    "pose_frame": (str, "FRAME", "TF: the fixed frame, such as map."),
-    "child_frame": (str, "FRAME", "TF: the robot's frame, such as base_link."),
-    "left_joints": (str, "NAMES", "JointState: left wheels, separated by commas."),
-    "right_joints": (str, "NAMES", "JointState: right wheels, separated by commas."),
-    "wheel_radius": (float, "METRES", "Wheel radius, for wheel speeds in rad/s."),
-    "wheel_separation": (
-        float,
-        "METRES",
-        "Distance between left and right wheels, for wheel speeds in rad/s.",
-    ),
-    "wheelbase": (float, "METRES", "Distance between the axles, for steering angles."),
-    "vehicle": (str, "NAME", "What the robot drives on: a preset such as husky, or a .yaml file."),
-    "command_scale": (
-        str,
-        "V,OMEGA",
-        "Factors of the commanded speed and yaw rate: 0.15,1 for rad/s of 0.15 m wheels; -1,1 for a sign.",
-    ),
-    "wheel_scale": (str, "V,OMEGA", "The same factors for the speed and yaw rate of the wheels."),
-    "pose_yaw_offset": (
-        float,
-        "RADIANS",
-        "Added to the heading of every pose: 3.1416 if the pose sensor looks backwards.",
-    ),
-    "most_unpacked": (float, "MIB", "What a compressed table or chunk may unpack to; default 512."),
-    "most_fetched": (float, "MIB", "What a log on a server may have; default 4096."),
-    "poses": (
-        list[Path],
-        "FILE",
-        "Measured poses in a file beside the log: TUM, KITTI, a table, GPX, NMEA, .pos. Again for others.",
-    ),
-    "pose_clock_offset": (
-        str,
-        "SECONDS",
-        "Added to the stamps of the poses; `auto` finds it from the motion that inputs and poses share.",
-    ),
-    "command_timeout": (
-        float,
-        "SECONDS",
-        "The robot's watchdog ends a command that is not repeated for so long; default: it is held.",
-    ),
-    "start": (float, "SECONDS", "Leave out what is before, counted from the log's start."),
-    "end": (float, "SECONDS", "Leave out what is after, counted from the log's start."),
-    "columns": (
-        str,
-        "NAMES",
-        "Columns of a table under other names, such as t=time,cmd_v=vx, or by number from 0: t=0,cmd_v=1.",
-    ),
+
+#: What typer reads; all else is text.
+_TYPES: dict[Kind, Any] = {
+    Kind.topics: list[str],
+    Kind.files: list[Path],
+    Kind.positive: float,
+    Kind.number: float,
 }
-_FACTORS = ("command_scale", "wheel_scale")
 
 
 def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command with a parameter `log_options` one option for each field of LogOptions.
+    """Give a command with a parameter `log_options` one option for each of LOG_FIELDS.
 
-    A command's own option of that name goes before: `slipwise live --vehicle` says whose model it is.
+    `--help` leaves them out, `--help-log` shows them.
     """
     unloaded = {"LogOptions": object}  # its module is heavy, and its type is never looked at
     signature = inspect.signature(command, eval_str=True, locals=unloaded)
     own = [parameter for parameter in signature.parameters.values() if parameter.name != "log_options"]
-    names = _LOG_OPTIONS.keys() - {parameter.name for parameter in own}
-    added = [_parameter(name, *about) for name, about in _LOG_OPTIONS.items() if name in names]
+    names = [about.name for about in LOG_FIELDS]
 
     @functools.wraps(command)
     def wrapper(**given: Any) -> int:
-        options = _log_options({name: given.pop(name) for name in names}, given.get("settings"))
+        given.pop("help_log")
+        chosen = {name: given.pop(name) for name in names}
+        options = _log_options(chosen, given.get("settings"), given.get("changes"))
         return command(log_options=options, **given)
 
+    older = RENAMED.get(command.__name__, {})  # read as something else for one release
+    shown = [about.name for about in LOG_FIELDS if about.option not in older]
+    added = [*map(_parameter, LOG_FIELDS), _help_log(shown)]
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in (*own, *added)]
     wrapper.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
     wrapper.__annotations__ = {p.name: p.annotation for p in parameters}
     return wrapper
 
 
-def chosen_settings(
-    file: Path | None, basis: str | None, estimator: str | None = None, body_force: str | None = None
-) -> Settings:
-    """Return the settings of a file, or the defaults, with what is given replaced.
+def chosen_settings(file: Path | None, changes: Sequence[str] | None, basis: str | None = None) -> Settings:
+    """Return the settings of a file, or the defaults, with what the command line gives before them.
 
     Raises:
-        SettingsError: the file, the basis, the estimator or the frame of a force is wrong.
+        SettingsError: the file, a key, a value or the basis is wrong.
     """
-    from slipwise.calibration import Settings, load_settings
+    from slipwise.calibration import load_settings, make_settings
 
-    settings = (load_settings(file) if file is not None else Settings()).choosing(
-        basis, estimator, body_force
-    )
+    nested = _nested(changes or ()) | ({"basis": basis} if basis else {})
+    settings = make_settings(nested, where="--set") if file is None else load_settings(file, nested)
     settings.bases()
     return settings
 
 
-def _parameter(name: str, kind: Any, metavar: str, text: str) -> inspect.Parameter:
+def _nested(changes: Sequence[str]) -> dict[str, Any]:
+    """Return `KEY=VALUE` texts as nested dictionaries, as a settings file would give them."""
+    import tomllib
+
+    from slipwise.calibration.settings import merged
+    from slipwise.errors import SettingsError
+
+    result: dict[str, Any] = {}
+    for change in changes:
+        key, equals, text = change.partition("=")
+        if not (key and equals and all(key.split("."))):
+            advice = "write KEY=VALUE, such as filter.huber=3"
+            raise SettingsError(f"'{change}' sets no key", where="--set", advice=advice)
+        try:
+            value = tomllib.loads(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError:
+            value = text  # a name without quotes
+        for part in reversed(key.strip().split(".")):
+            value = {part: value}
+        result = merged(result, value)
+    return result
+
+
+def _parameter(about: About) -> inspect.Parameter:
     option = typer.Option(
-        f"--{name.replace('_', '-')}", metavar=metavar, help=text, show_default=False, rich_help_panel="Log"
+        about.option, metavar=about.metavar, help=about.help, show_default=False, hidden=True
     )
+    kind: Any = _TYPES.get(about.kind, str)
     return inspect.Parameter(
-        name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[kind | None, option]
+        about.name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[kind | None, option]
     )
 
 
-def _log_options(given: dict[str, Any], settings: Path | None) -> LogOptions:
-    """Return the options of the command line, and for the others those of the settings file."""
+def _help_log(names: Sequence[str]) -> inspect.Parameter:
+    def show(ctx: typer.Context, asked: bool) -> None:
+        if asked:
+            show_options(ctx, names, "How a log is read (also settings, under [log])")
+            raise typer.Exit
+
+    text = f"Show the {len(names)} options for reading a log: topics, wheels, columns, clocks."
+    option = typer.Option("--help-log", help=text, callback=show, is_eager=True, show_default=False)
+    return inspect.Parameter(
+        "help_log", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Annotated[bool, option]
+    )
+
+
+def _log_options(given: dict[str, Any], file: Path | None, changes: Sequence[str] | None) -> LogOptions:
+    """Return the options of the command line, and for the others those of the settings."""
     from slipwise.logs import LogOptions
-    from slipwise.logs.column_names import parse_columns
 
-    chosen: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
-    for name, further in (("poses", "other_poses"), ("pose_topic", "other_pose_topics")):
-        if name in chosen:
-            chosen[name], *others = chosen[name]
-            chosen |= {further: tuple(others)} if others else {}
-    for name in ("left_joints", "right_joints"):
-        if name in chosen:
-            chosen[name] = tuple(part for part in chosen[name].split(",") if part)
-    if "columns" in chosen:
-        chosen["columns"] = parse_columns(chosen["columns"])
-    if "pose_clock_offset" in chosen:
-        chosen["pose_clock_offset"] = _seconds_or_auto(chosen["pose_clock_offset"])
-    for name in _FACTORS:
-        if name in chosen:
-            chosen[name] = _factors(name, chosen[name])
-    if settings is None:
-        return LogOptions(**chosen)
-    from slipwise.calibration import load_settings
-
-    return load_settings(settings).log_options(**chosen)
+    chosen = {
+        about.name: _value(about, given[about.name]) for about in LOG_FIELDS if given[about.name] is not None
+    }
+    if file is None and not changes:
+        return LogOptions.of(chosen)
+    return chosen_settings(file, changes).log_options(**chosen)
 
 
-def _factors(name: str, text: str) -> tuple[float, ...]:
+def _value(about: About, text: Any) -> Any:
+    """Return what the command line gives, as a settings file would have it."""
+    if about.kind is Kind.names:
+        return [part for part in text.split(",") if part]
+    if about.kind is Kind.columns:
+        from slipwise.logs.column_names import parse_columns
+
+        return parse_columns(text)
+    if about.kind is Kind.factors:
+        return _factors(about.option, text)
+    if about.kind is Kind.number_or_auto:
+        with contextlib.suppress(ValueError):  # LogOptions refuses what is not auto
+            return float(text)
+    return text
+
+
+def _factors(option: str, text: str) -> list[float]:
     from slipwise.errors import SettingsError
 
     try:
-        return tuple(float(part) for part in text.split(","))
+        return [float(part) for part in text.split(",")]
     except ValueError:
         raise SettingsError(
-            f"'{text}' is no two factors, of speed and yaw rate",
-            where=f"--{name.replace('_', '-')}",
+            f"'{text}' is not two factors, of speed and yaw rate",
+            where=option,
             advice="such as 0.15,1 or -1,1",
         ) from None
-
-
-def _seconds_or_auto(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text  # LogOptions knows what else it may be

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from slipwise.cli.options import Input, Json, Logs, SettingsFile, chosen_settings, takes_log_options
+from slipwise.cli.options import Changes, Input, Json, Logs, SettingsFile, chosen_settings, takes_log_options
 
 if TYPE_CHECKING:
     from slipwise.logs import LogOptions
@@ -23,6 +23,7 @@ def score(
     log_options: LogOptions,
     input_name: Input = None,
     settings: SettingsFile = None,
+    changes: Changes = None,
     json: Json = None,
 ) -> int:
     """Score a prediction file, of whatever method, on the log that it is of, by the rules of `evaluate`.
@@ -45,7 +46,7 @@ def score(
     from slipwise.logs import open_log
 
     out = Output(json)
-    chosen = chosen_settings(settings, None)
+    chosen = chosen_settings(settings, changes)
     refuse_unwritable(out.written_file, inputs=(predictions, *logs, *log_options.files, settings))
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)

@@ -18,7 +18,7 @@ from slipwise.live.gates import Gates, rules_for
 from slipwise.live.handover import Handover
 from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
-from slipwise.live.model_file import model_in
+from slipwise.live.model_file import model_in, surfaces_before
 from slipwise.live.move_adviser import MoveAdviser
 from slipwise.live.node import LiveNode, NodeParts
 from slipwise.live.said import Said
@@ -64,32 +64,32 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
         OutputError: a cache that cannot be read cannot be set aside either.
     """
     table, said = settings.live, Said()
-    if table.attitude and not table.memory_begins:  # what is begun with keeps its terms
+    before = surfaces_before(table)
+    if table.attitude and before is None:  # a memory that is continued keeps its terms
         settings = with_gravity(settings)
     start = _start_model(table.model, input_name)
-    before = _start_model(table.memory if isinstance(table.memory, str) else None, input_name)
     cache, learner, valid = None, None, None
     if table.cache is not None:
-        cache = Cache(Path(table.cache), CacheKey.of(table.vehicle, input_name, settings))
+        cache = Cache(Path(table.cache), CacheKey.of(table.name, input_name, settings))
         found = cache.load()
         learner, valid = found.learner, found.valid
         if found.said:
             said.note(math.nan, found.said, error=learner is None)
     learner = learner or _new_learner(input_name, settings, before, wheels=transport.wheels)
-    learning = Learning(learner, start or before, valid, said)
+    learning = Learning(learner, start, valid, said)
     rules = rules_for(start, reverse=table.gates.reverse, stale_after=table.gates.stale_after)
     gates = Gates(rules, input_name=input_name)
     intake = Intake(learner, gates, said, input_name=input_name, command_timeout=command_timeout)
     if run is not None:
-        intake.start_drive(run, DriveStart(table.terrain or "", today()))
+        intake.start_drive(run, DriveStart(table.surface or "", today()))
     applying = table.apply.mode != "off"
     if table.apply.targets and not applying:
         said.note(
             math.nan,
-            f"nothing is handed on to {', '.join(table.apply.targets)}: the node runs with --apply off",
+            f"nothing is handed on to {', '.join(table.apply.targets)}: live.apply.mode is off",
         )
     parts = NodeParts(
-        who=Identity(table.vehicle, input_name, table.apply.mode),
+        who=Identity(table.name, input_name, table.apply.mode),
         transport=transport,
         learning=learning,
         intake=intake,
@@ -111,7 +111,7 @@ def _new_learner(input_name: str, settings: Settings, before: Model | None, *, w
     learner = MotionLearner(
         input_name,
         settings,
-        remember=bool(live.memory),
+        remember=live.memory,
         positions=live.positions,
         sources=live.sources,
         gyro_alone=live.gyro_alone,

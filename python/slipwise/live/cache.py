@@ -67,7 +67,9 @@ class Cache:
     def __init__(self, folder: Path, key: CacheKey) -> None:
         vehicle = _UNFIT.sub("-", key.vehicle).strip("-.")
         if not vehicle:
-            raise SettingsError(f"the vehicle's name is {key.vehicle!r}", advice="give --vehicle a name")
+            raise SettingsError(
+                f"the vehicle's name is {key.vehicle!r}", advice="give --name one with a letter or digit"
+            )
         stem = f"{vehicle}-{key.input}"
         self._key = key
         self.state = folder / f"{stem}.state"
@@ -159,7 +161,7 @@ class Cache:
             raise OutputError(
                 "another node has this cache",
                 where=str(self.state),
-                advice="give each robot a --vehicle, or stop it",
+                advice="give each robot its own --name, or stop that node",
             ) from problem
         except OSError:
             pass  # a file system without locks gives none

@@ -6,6 +6,7 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
+from slipwise.calibration.live_table import LiveTable
 from slipwise.models import Model, load_model
 
 
@@ -22,6 +23,16 @@ def model_in(path: str) -> Model:
     return _read(path, now.st_mtime_ns, now.st_size, now.st_ino)
 
 
-@lru_cache(maxsize=2)  # a start model, and one with surfaces
+def surfaces_before(table: LiveTable) -> Model | None:
+    """Return the start model where a memory begins with the surfaces in it.
+
+    Raises:
+        ModelError: the file cannot be read.
+    """
+    model = model_in(table.model) if table.memory and table.model is not None else None
+    return model if model is not None and model.content.surfaces else None
+
+
+@lru_cache(maxsize=1)
 def _read(path: str, _changed: int, _size: int, _file: int) -> Model:
     return load_model(path)

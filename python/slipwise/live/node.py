@@ -278,7 +278,7 @@ class LiveNode:
         parts = self._parts
         valid = parts.learning.valid_now
         if parts.applied is None:
-            parts.said.note(t, "nothing is handed on: the node runs with --apply off")
+            parts.said.note(t, "nothing is handed on: live.apply.mode is off")
         elif valid is None:
             validity = parts.learning.validity
             parts.said.note(t, f"nothing is handed on: the model is {validity.whole}: {validity.why}")

@@ -4,15 +4,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from slipwise.errors import SettingsError
+from slipwise.log_fields import LOG_FIELDS, About, Kind, LogFields
 from slipwise.logs.held import UNKNOWN_AFTER
-from slipwise.logs.remote import MOST_FETCHED
-from slipwise.logs.unpacking import LARGEST_UNPACKED, MOST_UNPACKED
+from slipwise.logs.unpacking import LARGEST_UNPACKED
 
 if TYPE_CHECKING:
     from slipwise.logs.vehicle_description import ThrottleSteering, VehicleDescription
@@ -21,71 +21,37 @@ AUTO = "auto"
 
 
 @dataclass(frozen=True)
-class LogOptions:
+class LogOptions(LogFields):
     """How to read a log; whatever is None is guessed, and the guess is noted in the log.
 
     Raises:
         SettingsError: a length or a size is not positive, a time or an angle is no number, or a factor is 0.
     """
 
-    command_topic: str | None = None  # Twist[Stamped] or AckermannDriveStamped
-    pose_topic: str | None = None  # Odometry, Pose[WithCovariance]Stamped, NavSatFix or TFMessage
-    wheel_topic: str | None = None  # Odometry (its twist) or JointState
-    imu_topic: str | None = None  # Imu: orientation beside a NavSatFix, tilt beside planar poses
-    pose_frame: str | None = None  # TF: the fixed frame, such as "map"
-    child_frame: str | None = None  # TF: the robot, such as "base_link"
-    left_joints: tuple[str, ...] = ()  # JointState: wheels of the left side, by name
-    right_joints: tuple[str, ...] = ()
-    wheel_radius: float | None = None  # [m]
-    wheel_separation: float | None = None  # [m] between the left and the right wheels
-    wheelbase: float | None = None  # [m] between the axles, for steering angles
-    vehicle: str | None = None  # a preset or a .yaml file that says what the robot drives on
-    command_scale: tuple[float, float] = (1.0, 1.0)  # factors of the commanded speed and yaw rate
-    wheel_scale: tuple[float, float] = (1.0, 1.0)  # the same of the wheels'; such as their radius, or -1
-    pose_yaw_offset: float = 0.0  # [rad] added to the heading of every pose
-    most_unpacked: float = MOST_UNPACKED  # [MiB] that a compressed table, or a chunk of a bag, may unpack to
-    most_fetched: float = MOST_FETCHED  # [MiB] that a log on a server may have
-    poses: Path | None = None  # a file with the measured poses, beside a log whose own are not used
-    other_poses: tuple[Path, ...] = ()  # files of further sources of poses, beside these
+    other_poses: tuple[Path, ...] = ()  # files of further sources of poses, beside `poses`
     other_pose_topics: tuple[str, ...] = ()  # topics of further sources, beside the pose topic
-    pose_clock_offset: float | str | None = None  # [s] added to stamps of poses, or "auto" to find it
-    command_timeout: float | None = None  # [s] after which the robot ends a command that is not repeated
-    start: float | None = None  # [s] from the log's start; what is before is not used
-    end: float | None = None  # [s] from the log's start; what is after is not used
-    columns: Mapping[str, str] = field(default_factory=dict)  # tidy name -> name in the table
     unknown_after: float = UNKNOWN_AFTER  # [s] an input is unknown once it is older than this
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> LogOptions:
+        """Return options from values as a settings file has them: lists, and paths as text."""
+        given = dict(values)
+        for about in LOG_FIELDS:
+            value = given.get(about.name)
+            if about.kind in _SEVERAL and value is not None:
+                whole = about.kind is Kind.files
+                first, *others = [Path(v) if whole else v for v in _listed(value)]
+                further = {_FURTHER[about.name]: tuple(others)} if others else {}
+                given = {**given, about.name: first} | further
+            elif isinstance(value, list):
+                given[about.name] = tuple(value)
+        return cls(**given)
 
     def __post_init__(self) -> None:
         self._take_vehicle()
-        if self.command_timeout is not None and not 0.0 < self.command_timeout < math.inf:
-            what = f"--command-timeout must be a positive number of seconds, not {self.command_timeout}"
-            raise SettingsError(what, advice="such as 0.5, as the robot's watchdog has it")
-        for name in ("wheel_radius", "wheel_separation", "wheelbase"):
-            value: float | None = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value > 0.0):
-                raise SettingsError(
-                    f"{_option(name)} must be a positive number of metres, not {value}",
-                    advice="measure it on the robot",
-                )
-        self._check_corrections()
+        for about in LOG_FIELDS:
+            _check(about, getattr(self, about.name))
         self._check_sources()
-        for name, usual in (("most_unpacked", MOST_UNPACKED), ("most_fetched", MOST_FETCHED)):
-            size: float = getattr(self, name)
-            if not 0.0 < size <= LARGEST_UNPACKED:
-                raise SettingsError(
-                    f"{name} must be a positive number of MiB, not {size}",
-                    advice=f"the default is {usual:g}, the most {LARGEST_UNPACKED:g}",
-                )
-        for name in ("start", "end", "pose_clock_offset"):
-            given = getattr(self, name)
-            automatic = name == "pose_clock_offset"
-            if given is None or (automatic and given == AUTO):
-                continue
-            if not (isinstance(given, (int, float)) and math.isfinite(given)):
-                advice = f"such as 12.5{', or auto' if automatic else ''}"
-                raise SettingsError(
-                    f"{_option(name)} must be a number of seconds, not {given}", advice=advice
-                )
         if self.start is not None and self.end is not None and self.end <= self.start:
             raise SettingsError(
                 f"--end ({self.end:g} s) is not after --start ({self.start:g} s)", advice="exchange them"
@@ -162,16 +128,43 @@ class LogOptions:
             if len(set(names)) < len(names):
                 raise SettingsError(f"two sources of {_option(what)} have one name", advice="name each apart")
 
-    def _check_corrections(self) -> None:
-        for name in ("command_scale", "wheel_scale"):
-            factors: tuple[float, ...] = getattr(self, name)
-            if len(factors) != 2 or not all(math.isfinite(factor) and factor != 0.0 for factor in factors):
-                raise SettingsError(
-                    f"{_option(name)} must be two factors, of speed and yaw rate, neither of them 0",
-                    advice="such as 0.15,1 for wheels of 0.15 m whose speed is in rad/s, or -1,1 for a sign",
-                )
-        if not math.isfinite(self.pose_yaw_offset):
-            raise SettingsError("--pose-yaw-offset must be in radians", advice="3.1416 is half a turn")
+
+_SEVERAL = (Kind.topics, Kind.files)
+_FURTHER = {"pose_topic": "other_pose_topics", "poses": "other_poses"}
+_UNITS = {"METRES": "metres", "SECONDS": "seconds", "MIB": "MiB", "RADIANS": "radians"}
+_ADVICE = {
+    "METRES": "measure it on the robot",
+    "SECONDS": "such as 12.5",
+    "RADIANS": "3.1416 is half a turn",
+    "MIB": f"at most {LARGEST_UNPACKED:g}",
+}
+
+
+def _listed(value: Any) -> Sequence[Any]:
+    return value if isinstance(value, (list, tuple)) else [value]
+
+
+def _check(about: About, value: Any) -> None:
+    """Refuse a value that no log has."""
+    if about.kind is Kind.factors:
+        if len(value) != 2 or not all(math.isfinite(factor) and factor != 0.0 for factor in value):
+            raise SettingsError(
+                f"{about.option} must be two factors, of speed and yaw rate, neither of them 0",
+                advice="such as 0.15,1 for wheels of 0.15 m whose speed is in rad/s, or -1,1 for a sign",
+            )
+        return
+    automatic = about.kind is Kind.number_or_auto
+    if about.metavar not in _UNITS or value is None or (automatic and value == AUTO):
+        return
+    finite = isinstance(value, (int, float)) and math.isfinite(value)
+    positive = about.kind is Kind.positive
+    most = LARGEST_UNPACKED if about.metavar == "MIB" else math.inf
+    if not finite or (positive and not 0.0 < value <= most):
+        raise SettingsError(
+            f"{about.option} must be a {'positive ' if positive else ''}number of "
+            f"{_UNITS[about.metavar]}, not {value}",
+            advice=_ADVICE[about.metavar] + (", or auto" if automatic else ""),
+        )
 
 
 def _option(name: str) -> str:

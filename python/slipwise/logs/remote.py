@@ -18,12 +18,13 @@ from typing import TYPE_CHECKING, Any
 from slipwise.addresses import remote_url, shown
 from slipwise.errors import LogError
 from slipwise.extras import to_install
+from slipwise.log_fields import LogFields
 from slipwise.logs.piped import regular_file
 
 if TYPE_CHECKING:
     from fsspec import AbstractFileSystem
 
-MOST_FETCHED = 4096.0  # [MiB]
+MOST_FETCHED = LogFields.most_fetched  # [MiB]
 _BLOCK = 1 << 20
 _NOT_FOUND = 404  # of HTTP
 _PATIENCE = 60.0  # [s] without a byte

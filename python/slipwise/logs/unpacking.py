@@ -10,9 +10,10 @@ from contextvars import ContextVar
 from typing import Any, Protocol
 
 from slipwise.errors import LogError
+from slipwise.log_fields import LogFields
 
 MEBIBYTE = 1 << 20
-MOST_UNPACKED = 512.0  # MiB; a table of 5 million rows, and far more than recorders put into a chunk
+MOST_UNPACKED = LogFields.most_unpacked  # MiB: 5 million rows, and more than recorders put into a chunk
 LARGEST_UNPACKED = 1e6  # MiB
 
 _most: ContextVar[float] = ContextVar("most_unpacked", default=MOST_UNPACKED)

@@ -205,7 +205,7 @@ class Model:
         if self.motion.basis.by_heading:
             raise ModelError(
                 f"{what} know no heading over the map, and a force of this model depends on it",
-                advice="use without_force(model), or calibrate with --body-force body",
+                advice="use without_force(model), or calibrate with --set body_force.frame=body",
             )
 
     def refuse_throttle(self, what: str) -> None:

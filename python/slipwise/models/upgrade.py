@@ -17,6 +17,7 @@ RENAMED_SETTINGS: RenamedKeys = {
     "prior": {"lag": "time_constant"},
     "vehicle": {"track": "wheel_separation"},
     "log": {"track": "wheel_separation"},
+    "live": {"terrain": "surface", "terrain_topic": "surface_topic"},
 }
 
 _GONE = ("start",)  # sections that nothing reads any more

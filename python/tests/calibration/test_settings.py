@@ -12,7 +12,7 @@ from sample_logs import Drive, simulated_log
 from slipwise import _core
 from slipwise.calibration import Settings, calibrate, load_settings, make_settings
 from slipwise.calibration.core_settings import core_settings
-from slipwise.errors import SettingsError
+from slipwise.errors import OlderNames, SettingsError
 from slipwise.segments import WindowRules
 
 EVERY_KEY = """
@@ -58,6 +58,7 @@ learn = false
 detect = false
 
 [smoothing]
+smooth = true
 drift = "random-walk"
 length = 20.0
 
@@ -167,7 +168,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
 
 def test_there_are_few_enough_keys_to_read() -> None:
     learning = {key for key in key_paths(Settings().model_dump()) if not key.startswith("log.")}
-    assert len(learning) <= 34
+    assert len(learning) <= 35  # smoothing.smooth was an option before
 
 
 def test_every_key_set_still_calibrates(tmp_path: Path) -> None:
@@ -285,9 +286,19 @@ def test_third_partys_basis_is_learned_by_its_terms_alone() -> None:
 
 def test_keys_of_the_version_before_are_read_and_said() -> None:
     old = {"mount": {"x": 0.3}, "window": {"length": 1.9}, "prior": {"lag": 0.2}, "vehicle": {"track": 0.5}}
-    with pytest.warns(FutureWarning, match=r"mount is sensor_extrinsics now, window is segment now"):
+    with pytest.warns(OlderNames, match=r"mount is sensor_extrinsics now, window is segment now"):
         settings = make_settings(old)
     assert settings.sensor_extrinsics.x == 0.3
     assert settings.segment_length("wheel") == 1.9
     assert settings.prior.time_constant == 0.2
     assert settings.vehicle.wheel_separation == 0.5
+
+
+def test_older_keys_of_live_are_read_where_name_was_that_of_the_node() -> None:
+    old = {"vehicle": "husky-1", "name": "front", "terrain": "sand", "memory": "monday.yaml"}
+    with pytest.warns(OlderNames, match=r"live.vehicle is live.name now, live.name is live.node now"):
+        live = make_settings({"live": old}).live
+    assert (live.name, live.node, live.surface) == ("husky-1", "front", "sand")
+    assert (live.memory, live.model) == (True, "monday.yaml")
+    with pytest.raises(SettingsError, match=r"live.memory"):
+        make_settings({"live": {"memory": "monday.yaml", "model": "another.yaml"}})

@@ -94,7 +94,7 @@ def test_the_settings_of_a_run_give_the_same_model_again(slipwise: Slipwise, dri
 def test_calibrate_learns_by_the_estimator_that_is_named(
     slipwise: Slipwise, drive_csv: Path, estimator: str
 ) -> None:
-    asked = ("--estimator", estimator, "--basis", "edd-2", "--input", "wheel")
+    asked = ("--set", f"estimator={estimator}", "--basis", "edd-2", "--input", "wheel")
     result = slipwise("calibrate", drive_csv, *asked, "-o", "model.yaml")
     assert (result.code, result.err) == (0, "")
     assert load_model("model.yaml").content.provenance.settings["estimator"] == estimator
@@ -107,7 +107,7 @@ def test_calibrate_learns_by_the_estimator_that_is_named(
 
 
 def test_calibrate_refuses_an_estimator_that_does_not_exist(slipwise: Slipwise, drive_csv: Path) -> None:
-    result = slipwise("calibrate", drive_csv, "--estimator", "magic")
+    result = slipwise("calibrate", drive_csv, "--set", "estimator=magic")
     assert result.code == 2
     assert "unknown estimator 'magic'; known are average, gradient-descent, ekf-thesis" in result.err
     assert not Path("runs").exists()
@@ -116,7 +116,9 @@ def test_calibrate_refuses_an_estimator_that_does_not_exist(slipwise: Slipwise, 
 def test_smoothed_parameters_are_written_and_shown_where_asked_for(
     slipwise: Slipwise, drive_csv: Path
 ) -> None:
-    result = slipwise("calibrate", drive_csv, "--basis", "edd-2", "--smooth", "--json", "-")
+    result = slipwise(
+        "calibrate", drive_csv, "--basis", "edd-2", "--set", "smoothing.smooth=true", "--json", "-"
+    )
     table = Path(result.json["files"]["smoothed"])
     assert table == Path("runs") / Path(result.json["files"]["settings"]).parent.name / "smoothed.csv"
     assert table.read_text().startswith("run,t_start,t_end,lon.V,std(lon.V),ang.w,")

@@ -61,20 +61,20 @@ def test_with_a_memory_a_log_is_replayed_into_the_model_that_calibrate_writes_wi
     sw.save_log(hilly_log(1, Hills(seconds=60.0)), hills)
     monkeypatch.chdir(tmp_path)
     replay = ["live", "--replay", str(hills), "--rate", "0", "--quiet"]
-    assert run([*replay, "--memory", "--terrain", "grass", "-o", str(live)]) == 0
+    assert run([*replay, "--memory", "--set", "live.surface=grass", "-o", str(live)]) == 0
     learn = ["calibrate", "--memory", "--no-report"]
-    assert run([*learn, str(hills), "--terrain", "grass", "-o", str(log)]) in (0, 1)
+    assert run([*learn, str(hills), "--surface", "grass", "-o", str(log)]) in (0, 1)
     assert live.read_bytes() == log.read_bytes()
     assert [each.name for each in sw.load_model(live).content.surfaces] == ["grass"]
     assert "gy" in live.read_text(encoding="utf-8")
     on, on_too = tmp_path / "on.yaml", tmp_path / "on-too.yaml"
     assert run([*learn, str(log), str(hills), "-o", str(on)]) in (0, 1)
-    assert run([*replay, "--memory", str(live), "-o", str(on_too)]) == 0
+    assert run([*replay, "--memory", "--model", str(live), "-o", str(on_too)]) == 0
     assert on_too.read_bytes() == on.read_bytes()
 
 
 def test_labels_without_a_memory_are_refused(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["live", "--replay", str(drive), "--rate", "0", "--terrain", "sand"]) == 2
+    assert run(["live", "--replay", str(drive), "--rate", "0", "--set", "live.surface=sand"]) == 2
     assert "add --memory" in capsys.readouterr().err
 
 
@@ -83,7 +83,7 @@ def test_a_start_model_that_remembers_surfaces_is_begun_with(
 ) -> None:
     first, second = tmp_path / "first.yaml", tmp_path / "second.yaml"
     replay = ["live", "--replay", str(drive), "--rate", "0", "--memory"]
-    assert run([*replay, "--terrain", "hall", "--quiet", "-o", str(first)]) == 0
+    assert run([*replay, "--set", "live.surface=hall", "--quiet", "-o", str(first)]) == 0
     capsys.readouterr()
     assert run([*replay, "--model", str(first), "-o", str(second)]) == 0
     assert "the surface is hall, as before" in capsys.readouterr().out
@@ -159,10 +159,10 @@ def test_lines_on_a_pipe_are_answered_with_lines(drive: Path) -> None:
 
 def test_settings_stand_in_a_file_and_the_command_line_goes_before_it(drive: Path, tmp_path: Path) -> None:
     settings = tmp_path / "live.toml"
-    settings.write_text(f'[live]\nvehicle = "from-file"\ncache = "{tmp_path}/cache"\ninput = "wheel"\n')
+    settings.write_text(f'[live]\nname = "from-file"\ncache = "{tmp_path}/cache"\ninput = "wheel"\n')
     given = ["live", "--replay", str(drive), "--rate", "0", "--settings", str(settings), "--quiet"]
     assert run(given) == 0
-    assert run([*given, "--vehicle", "from-line"]) == 0
+    assert run([*given, "--name", "from-line"]) == 0
     assert sorted(path.name for path in (tmp_path / "cache").glob("*.state")) == [
         "from-file-wheel.state",
         "from-line-wheel.state",
@@ -173,11 +173,11 @@ def test_settings_stand_in_a_file_and_the_command_line_goes_before_it(drive: Pat
     ("options", "said"),
     [
         (["--transport", "carrier-pigeon"], "transport"),
-        (["--apply", "always"], "apply"),
-        (["--name", "two words"], "name"),
-        (["--domain", "999"], "domain"),
+        (["--set", "live.apply.mode=always"], "apply"),
+        (["--set", "live.node=two words"], "node"),
+        (["--set", "live.domain=999"], "domain"),
         (["--replay", "nowhere.csv"], "no such file"),
-        (["--transport", "udp", "--address", "nowhere"], "cannot listen"),
+        (["--transport", "udp", "--set", "live.address=nowhere"], "cannot listen"),
     ],
 )
 def test_what_cannot_be_is_one_line(

@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from cli.conftest import Columns, Result, write_csv
+
+from slipwise.cli.older_names import with_new_names
+from slipwise.cli.options import chosen_settings
+from slipwise.log_fields import LOG_FIELDS
 
 Slipwise = Callable[..., Result]
 
@@ -26,11 +31,54 @@ def tum_of(folder: Path, columns: Columns, away: float) -> Path:
     return folder / "poses.txt"
 
 
-@pytest.mark.parametrize("command", ["inspect", "calibrate", "evaluate", "convert"])
-def test_every_command_that_reads_a_log_takes_its_options(slipwise: Slipwise, command: str) -> None:
-    text = " ".join(slipwise(command, "--help").out.split())
-    for option in ("--poses", "--pose-clock-offset", "--start", "--end", "--columns", "--settings"):
-        assert option in text, option
+READERS = ("inspect", "calibrate", "evaluate", "compare", "live", "convert", "score")
+
+
+def options_in(text: str) -> set[str]:
+    return set(re.findall(r"^ +(?:-\w, )?(--[\w-]+)", text, re.MULTILINE))
+
+
+def test_every_command_that_reads_a_log_takes_its_options_and_shows_them_apart(slipwise: Slipwise) -> None:
+    reading = {about.option for about in LOG_FIELDS}
+    for command in READERS:
+        own, log = (options_in(slipwise(command, page).out) for page in ("--help", "--help-log"))
+        assert not own & reading, command
+        assert log >= reading - {"--vehicle"}, command
+    assert "--vehicle" in options_in(slipwise("calibrate", "--help-log").out)
+
+
+def test_few_options_stand_beside_those_of_reading(slipwise: Slipwise) -> None:
+    for command, most in (("calibrate", 12), ("live", 16)):
+        own = options_in(slipwise(command, "--help").out) - {"--help", "--help-log"}
+        assert len(own) <= most, (command, own)
+
+
+def test_options_are_read_under_their_older_names_with_a_note(capsys: pytest.CaptureFixture[str]) -> None:
+    older = ["calibrate", "a.csv", "--estimator", "iekf", "--smooth", "--terrain=sand", "--memory", "m.yaml"]
+    assert with_new_names(older) == [
+        *("calibrate", "a.csv", "--set", "estimator=iekf", "--set", "smoothing.smooth=true"),
+        *("--surface", "sand", "--memory", "m.yaml"),
+    ]
+    live = ["live", "--vehicle", "husky-1", "--memory", "m.yaml", "--for", "5", "--network"]
+    assert with_new_names(live) == [
+        *("live", "--name", "husky-1", "--memory", "--model", "m.yaml"),
+        *("--set", "live.duration=5", "--set", "live.network=true"),
+    ]
+    notes = capsys.readouterr().err.splitlines()
+    assert len(notes) == 7
+    assert "note: live --vehicle is now --name" in notes
+    now = ["calibrate", "a.csv", "--vehicle", "husky", "--set", "estimator=iekf"]
+    assert with_new_names(now) == now
+
+
+def test_a_setting_on_the_command_line_goes_before_the_file(slipwise: Slipwise, drive_csv: Path) -> None:
+    Path("a.toml").write_text("[log]\nstart = 10.0\nend = 20.0\n")
+    given = ("convert", drive_csv, "-o", "a.csv", "--settings", "a.toml")
+    assert "only 10 s to 20 s" in slipwise(*given).out
+    chosen = chosen_settings(Path("a.toml"), ["log.end=30", "basis=edd-2", "filter.huber=3"])
+    assert (chosen.log.start, chosen.log.end, chosen.basis, chosen.filter.huber) == (10.0, 30.0, "edd-2", 3.0)
+    assert "sets no key" in slipwise("inspect", drive_csv, "--set", "huber").line
+    assert "filter.hubber" in slipwise("inspect", drive_csv, "--set", "filter.hubber=3").line
 
 
 def test_columns_and_a_span_are_taken_from_the_command_line(

@@ -30,7 +30,7 @@ def test_surfaces_are_learned_gone_on_from_renamed_and_merged(
     slipwise: Slipwise, folder: Path, logs: list[Path]
 ) -> None:
     monday, tuesday, both = folder / "monday.yaml", folder / "tuesday.yaml", folder / "both.yaml"
-    first = slipwise(*LEARN, *logs[:2], "-o", monday, "--terrain", "hall", "--terrain", "sand")
+    first = slipwise(*LEARN, *logs[:2], "-o", monday, "--surface", "hall", "--surface", "sand")
     assert first.code == 0
     assert "drive1.csv ended on sand." in first.out
     second = slipwise(*LEARN, monday, logs[2], "-o", tuesday, "--json", "-").json
@@ -62,15 +62,15 @@ def test_a_table_of_labels_teaches_what_is_said_on_which_surface(
         for t in range(0, 55, 5)
     ]
     labels.write_text("\n".join(("run,t_start,t_end,label,p_white,p_brown,p_unknown", *rows)) + "\n")
-    assert slipwise(*LEARN, *logs, "-o", model, "--terrain", labels).code == 0
+    assert slipwise(*LEARN, *logs, "-o", model, "--surface", labels).code == 0
     firm, loose = load_model(model).content.surfaces
     assert firm.classes["white"] > firm.classes["brown"]
     assert loose.classes["brown"] > loose.classes["white"]
-    again = slipwise(*LEARN, model, logs[0], "--terrain", labels, "--json", "-").json
+    again = slipwise(*LEARN, model, logs[0], "--surface", labels, "--json", "-").json
     assert again["visits"][0]["surface"] == firm.name
-    assert "names or tables" in slipwise(*LEARN, logs[0], "--terrain", labels, "--terrain", "hall").line
-    assert "replace what is read" in slipwise(*LEARN, logs[0], "--terrain", labels, "-o", labels).line
-    assert "the labels are of runs x" in slipwise(*LEARN, logs[0], "--terrain", _of_another_run(folder)).line
+    assert "cannot be mixed" in slipwise(*LEARN, logs[0], "--surface", labels, "--surface", "hall").line
+    assert "replace what is read" in slipwise(*LEARN, logs[0], "--surface", labels, "-o", labels).line
+    assert "the labels are of runs x" in slipwise(*LEARN, logs[0], "--surface", _of_another_run(folder)).line
 
 
 def _of_another_run(folder: Path) -> Path:
@@ -80,9 +80,9 @@ def _of_another_run(folder: Path) -> Path:
 
 
 def test_what_contradicts_itself_is_refused(slipwise: Slipwise, folder: Path, logs: list[Path]) -> None:
-    assert "add --memory" in slipwise("calibrate", logs[0], "--terrain", "sand").line
-    assert "add --memory" in slipwise("evaluate", logs[0], "--terrain", "sand").line
-    assert "leave --smooth" in slipwise(*LEARN, logs[0], "--smooth").line
-    assert "no log was given" in slipwise(*LEARN, folder / "m.yaml").line
+    assert "add --memory" in slipwise("calibrate", logs[0], "--surface", "sand").line
+    assert "add --memory" in slipwise("evaluate", logs[0], "--surface", "sand").line
+    assert "smoothing is over one surface" in slipwise(*LEARN, logs[0], "--set", "smoothing.smooth=true").line
+    assert "no log given" in slipwise(*LEARN, folder / "m.yaml").line
     assert "from one model" in slipwise(*LEARN, folder / "a.yaml", folder / "b.yaml", logs[0]).line
-    assert "2 labels for 3 logs" in slipwise(*LEARN, *logs, "--terrain", "a", "--terrain", "b").line
+    assert "2 labels for 3 logs" in slipwise(*LEARN, *logs, "--surface", "a", "--surface", "b").line

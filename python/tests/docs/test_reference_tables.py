@@ -2,6 +2,7 @@
 """Tables in the documents say what the code says: settings, bases, columns, names."""
 
 import re
+import runpy
 import tomllib
 from typing import Any
 
@@ -62,6 +63,12 @@ def test_the_settings_page_lists_every_key_with_its_default() -> None:
     defaults = re.search(r"without it ([\d.]+) from wheel speeds and ([\d.]+) from commands", block)
     assert defaults is not None
     assert (float(defaults[1]), float(defaults[2])) == (SEGMENT_SECONDS["wheel"], SEGMENT_SECONDS["command"])
+
+
+def test_the_settings_page_has_the_options_of_reading_as_they_are_declared() -> None:
+    page = read("settings.md")
+    written = runpy.run_path(str(DOCS / "settings_page.py"))["with_rows"](page)
+    assert written == page, "run python docs/settings_page.py"
 
 
 def test_the_settings_blocks_of_other_pages_are_valid() -> None:

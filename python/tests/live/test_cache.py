@@ -92,7 +92,7 @@ def test_what_cannot_be_read_is_set_aside_and_said(
 def test_a_second_node_on_the_same_cache_is_refused_until_the_first_ends(tmp_path: Path) -> None:
     first, second = Cache(tmp_path, KEY), Cache(tmp_path, KEY)
     first.load()
-    with pytest.raises(OutputError, match=r"another node has this cache.*--vehicle"):
+    with pytest.raises(OutputError, match=r"another node has this cache.*--name"):
         second.load()
     first.close()
     assert second.load().said == ""
@@ -150,5 +150,5 @@ def test_a_folder_that_cannot_be_written_is_an_error_that_says_so(
 
 
 def test_a_vehicle_without_a_name_has_no_cache(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match="--vehicle"):
+    with pytest.raises(SettingsError, match="--name"):
         Cache(tmp_path, CacheKey.of("///", "wheel", Settings())).load()

@@ -162,7 +162,7 @@ def test_names_of_files_are_shown_as_they_are() -> None:
 
 
 def test_a_limit_is_positive() -> None:
-    with pytest.raises(SettingsError, match="most_fetched must be a positive number of MiB"):
+    with pytest.raises(SettingsError, match="--most-fetched must be a positive number of MiB"):
         LogOptions(most_fetched=0.0)
 
 

@@ -127,5 +127,5 @@ def test_a_parquet_file_that_claims_little_and_holds_much_is_refused(tmp_path: P
 
 @pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf")])
 def test_the_size_allowed_is_a_positive_number(value: float) -> None:
-    with pytest.raises(SettingsError, match="most_unpacked must be a positive number of MiB"):
+    with pytest.raises(SettingsError, match="--most-unpacked must be a positive number of MiB"):
         LogOptions(most_unpacked=value)

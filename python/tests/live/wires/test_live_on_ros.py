@@ -97,7 +97,7 @@ def command_of(transport: str, ros_python: Path, output: Path) -> list[str]:
         "from slipwise.cli.main import main; main()"
     )
     start = [sys.executable, "-m", "slipwise"] if transport == "cyclonedds" else [str(ros_python), "-c", ours]
-    return [*start, "live", "--transport", transport, "--domain", str(DOMAIN), "-o", str(output)]
+    return [*start, "live", "--transport", transport, "--set", f"live.domain={DOMAIN}", "-o", str(output)]
 
 
 @pytest.mark.parametrize("transport", ["cyclonedds", "rclpy"])
@@ -147,7 +147,7 @@ def test_a_real_node_names_the_surface_and_hears_which_one_it_is(
         },
     )
     command = command_of(transport, ros_python, output)
-    command += ["--input", "wheel", "--memory", str(floors), "--terrain-topic", "/label"]
+    command += ["--input", "wheel", "--memory", "--model", str(floors), "--set", "live.surface_topic=/label"]
     found = played(lines, ros_python, command)
     name, whole = found["surfaces"]
     assert name == "sand"

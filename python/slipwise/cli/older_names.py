@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Options under their older names, read for one release with a note; and ports of options without a value."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from slipwise.errors import OlderNames
+
+#: Ports of `slipwise live`, where an option of a server comes without one.
+_PORTS = {"--web": "8088", "--foxglove": "8765"}
+
+#: By command: the option now, `--set KEY` for one that became a setting, `--set KEY=VALUE` for a flag.
+RENAMED: dict[str, dict[str, str]] = {
+    "calibrate": {
+        "--estimator": "--set estimator",
+        "--body-force": "--set body_force.frame",
+        "--smooth": "--set smoothing.smooth=true",
+        "--terrain": "--surface",
+    },
+    "evaluate": {"--terrain": "--surface"},
+    "fleet": {"--vehicle": "--name"},
+    "live": {
+        "--vehicle": "--name",
+        "--basis": "--set basis",
+        "--body-force": "--set body_force.frame",
+        "--terrain": "--set live.surface",
+        "--terrain-topic": "--set live.surface_topic",
+        "--override-topic": "--set live.override_topic",
+        "--domain": "--set live.domain",
+        "--network": "--set live.network=true",
+        "--address": "--set live.address",
+        "--apply": "--set live.apply.mode",
+        "--host": "--set live.host",
+        "--record": "--set live.record",
+        "--for": "--set live.duration",
+    },
+}
+
+
+def with_new_names(arguments: Sequence[str]) -> list[str]:
+    """Return the arguments with options under their present names, and note each older one on stderr."""
+    command, *given = arguments
+    renamed = RENAMED.get(command, {})
+    result, rest = [command], iter(given)
+    for argument in rest:
+        name, equals, value = argument.partition("=")
+        if name in renamed:
+            print(f"note: {command} {name} is now {renamed[name]}", file=sys.stderr)
+            result += _translated(renamed[name], value if equals else None, rest)
+        elif command == "live" and result[-1] == "--memory" and argument.endswith((".yaml", ".yml")):
+            print("note: live --memory MODEL is now --memory --model MODEL", file=sys.stderr)
+            result += ["--model", argument]
+        else:
+            result.append(argument)
+    return result
+
+
+def _translated(new: str, value: str | None, rest: Iterator[str]) -> list[str]:
+    option, _, key = new.partition(" ")
+    if "=" in key:
+        return [option, key]
+    value = next(rest, None) if value is None else value
+    if value is None:
+        return [option]  # the command says that a value is missing
+    return [option, f"{key}={value}" if key else value]
+
+
+@contextlib.contextmanager
+def notes_of_older_names() -> Iterator[None]:
+    """Note older keys of settings files on stderr, one line each; other future warnings are of libraries."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FutureWarning)
+        warnings.simplefilter("always", OlderNames)
+        show = warnings.showwarning
+
+        def note(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+            if category is OlderNames:
+                print(f"note: {message}", file=sys.stderr)
+            else:
+                show(message, category, *where, **more)
+
+        warnings.showwarning = note
+        yield
+
+
+def with_ports(arguments: Sequence[str]) -> list[str]:
+    """Return the arguments with the usual port behind every option of a server that has none."""
+    result = []
+    for argument, after in zip(arguments, [*arguments[1:], ""], strict=True):
+        result.append(argument)
+        if argument in _PORTS and not after.isdigit():
+            result.append(_PORTS[argument])
+    return result
