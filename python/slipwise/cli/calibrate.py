@@ -118,7 +118,12 @@ def calibrate(
                 files["report"] = report or folder / "report.html"
                 update("writing the report", 1.0)
                 calibration = report_calibration(
-                    files["report"], log, calibration, chosen, command=command_line()
+                    files["report"],
+                    log,
+                    calibration,
+                    chosen,
+                    command=command_line(),
+                    model=output or files["model"],
                 )
             if output is not None:
                 files["model"] = calibration.model.save(output)

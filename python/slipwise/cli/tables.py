@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from slipwise.calibration.next_step import verdict_label
 from slipwise.cli.output import Column, Output
 from slipwise.cli.run_folder import killed_runs
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, NEGLIGIBLE
@@ -74,13 +75,6 @@ def show_verdict(output: Output, verdict: Verdict | VerdictSection, next_step: S
         output.line(f"  {verdict.timing}")
     if verdict.force:
         output.line(f"  {verdict.force}")
-
-
-def verdict_label(verdict: Verdict | VerdictSection) -> tuple[str, str]:
-    """Return what a verdict says in a few words, and its colour."""
-    if verdict.good and verdict.reservations:
-        return "GOOD, WITH RESERVATIONS.", "yellow"
-    return ("GOOD.", "green") if verdict.good else ("NOT GOOD ENOUGH.", "red")
 
 
 def show_files(output: Output, files: Mapping[str, Path]) -> None:

@@ -33,6 +33,7 @@ class Summary:
 
     sentences: tuple[str, ...]
     parameters: tuple[PhysicalParameter, ...]  # all of them, limits included
+    prediction: tuple[str, ...] = ()  # those of the sentences that say how well the model predicts
 
     def __str__(self) -> str:
         return " ".join(self.sentences)
@@ -49,9 +50,9 @@ def summarise(model: Model) -> Summary:
         *_limit_sentences(parameters),
         *_offset_sentences(parameters, model.content.range.wheel_step),
         *sensor_sentences(model),
-        *_prediction_sentences(model),
     ]
-    return Summary(tuple(sentences), parameters)
+    prediction = tuple(_prediction_sentences(model))
+    return Summary((*sentences, *prediction), parameters, prediction)
 
 
 def _limit_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from slipwise.calibration.result import Calibration
 from slipwise.evaluation.result import Evaluation, Predictions, Score
@@ -26,6 +27,7 @@ class Contents:
     evaluation: Evaluation
     title: str
     command: str = ""  # the command line that made the report
+    model: Path = Path("model.yaml")  # where the model was written
 
     @property
     def longest_horizon(self) -> float | None:

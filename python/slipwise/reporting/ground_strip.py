@@ -64,7 +64,7 @@ def strip_html(strip: GroundStrip, *, title: str) -> str:
             "shapes": _lines(strip.alarms, ALARM_COLOUR, "solid")
             + _lines(strip.boundaries, "#9aa5b1", "dot"),
         },
-        height=190,
+        height=200,
         caption=thinning_note(len(strip.x), CURVE_POINTS),
     )
     return legend(keys) + figure.html()

@@ -10,18 +10,17 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.models.parameter_table import physical_parameters
+from slipwise.models.parameter_table import physical_name, physical_parameters
 from slipwise.models.schema import Parameter
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.markup import details, legend, number, paragraph
 from slipwise.reporting.palette import LEARNED_STROKE, transparent
-from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
+from slipwise.reporting.thinning import SMALL_POINTS, thinned, thinning_note
 from slipwise.reporting.timeline import Timeline, with_breaks
 
 _MOST_PARAMETERS = 12
-_SHOWN_AT_ONCE = 10  # the others are folded away
-_LOGARITHM = "log_"  # lags and delays are learned as logarithms and shown in seconds
+_SHOWN_AT_ONCE = 5  # the others are folded away
 Floats = NDArray[np.float64]
 
 
@@ -83,7 +82,9 @@ def parameter_figures(
         ("± 1 sigma", LEARNED_STROKE.colour, "area"),
     )
     more = f"; {left} more are in the table" if left > 0 else ""
-    note = f"Ordered by how much of the motion they explain{more}. {thinning_note(len(course.t))}"
+    note = (
+        f"Ordered by how much of the motion they explain{more}. {thinning_note(len(course.t), SMALL_POINTS)}"
+    )
     rest = figures[_SHOWN_AT_ONCE:]
     folded = details(f"{len(rest)} more parameters", _grid(rest)) if rest else ""
     return legend(keys) + _grid(figures[:_SHOWN_AT_ONCE]) + folded + paragraph(note.strip(), kind="note")
@@ -111,7 +112,7 @@ def _figure(
 ) -> Figure:
     (parameter, identified), (key, marks) = what, label
     timeline, column = Timeline.of(contents.log), course.names.index(parameter.name)
-    keep = thinned(len(course.t), CURVE_POINTS)
+    keep = thinned(len(course.t), SMALL_POINTS)
     run = course.run[keep]
     x = timeline.at(run, course.t[keep])
     shown = _Shown.of(parameter)
@@ -126,7 +127,7 @@ def _figure(
     }
     return Figure(
         key=key,
-        label=f"Parameter {parameter.name} over time",
+        label=f"Parameter {shown.name} over time",
         heading=shown.name + ("" if identified else " (not identified)"),
         traces=[_band(x, shown.values(mean - std), shown.values(mean + std)), value],
         layout={
@@ -149,9 +150,10 @@ class _Shown:
 
     @classmethod
     def of(cls, parameter: Parameter) -> _Shown:
-        if parameter.name.startswith(_LOGARITHM):
-            return cls(parameter.name.removeprefix(_LOGARITHM), "s", True)
-        return cls(parameter.name, parameter.unit or "-", False)
+        name = physical_name(parameter.name)
+        if name != parameter.name:
+            return cls(name, "s", True)
+        return cls(name, parameter.unit or "-", False)
 
     def values(self, values: Floats) -> Floats:
         return np.exp(values) if self.exponential else values

@@ -46,6 +46,7 @@ def write_report(  # noqa: PLR0913 - the three results of a session, and how to 
     evaluation: Evaluation,
     title: str,
     command: str = "",
+    model: Path = Path("model.yaml"),
     sections: Sequence[Section] = SECTIONS,
 ) -> Path:
     """Write one self-contained HTML page that works offline; the same input gives the same bytes.
@@ -57,6 +58,7 @@ def write_report(  # noqa: PLR0913 - the three results of a session, and how to 
         evaluation: how well it predicts.
         title: heading of the page, any text.
         command: the command line, shown as provenance.
+        model: where the model was written, for the commands that come next.
         sections: what the page shows, the first at once and the others folded under their headings;
             `SECTIONS` plus one's own for an extended report.
 
@@ -66,6 +68,8 @@ def write_report(  # noqa: PLR0913 - the three results of a session, and how to 
     Raises:
         OutputError: the file cannot be written.
     """
-    contents = Contents(log=log, calibration=calibration, evaluation=evaluation, title=title, command=command)
+    contents = Contents(
+        log=log, calibration=calibration, evaluation=evaluation, title=title, command=command, model=model
+    )
     write_text_whole(path, page(contents, sections))
     return path

@@ -14,8 +14,14 @@ from slipwise.reporting.report import write_report
 BASELINES = ("none", "edd-2")
 
 
-def report_calibration(
-    path: Path, log: Log, calibration: Calibration, settings: Settings, *, command: str = ""
+def report_calibration(  # noqa: PLR0913 - what was learned from what, and how to call it
+    path: Path,
+    log: Log,
+    calibration: Calibration,
+    settings: Settings,
+    *,
+    command: str = "",
+    model: Path = Path("model.yaml"),
 ) -> Calibration:
     """Judge what was learned on its log beside the baselines, and write the page.
 
@@ -27,6 +33,7 @@ def report_calibration(
         calibration: what was learned.
         settings: what it was learned with.
         command: the command line, shown as provenance.
+        model: where the model is written.
 
     Raises:
         OutputError: the file cannot be written.
@@ -45,5 +52,13 @@ def report_calibration(
     )
     calibration = proposing(calibration, evaluation)
     title = ", ".join(run.name for run in log.runs[:3])
-    write_report(path, log=log, calibration=calibration, evaluation=evaluation, title=title, command=command)
+    write_report(
+        path,
+        log=log,
+        calibration=calibration,
+        evaluation=evaluation,
+        title=title,
+        command=command,
+        model=model,
+    )
     return calibration

@@ -15,7 +15,8 @@ from slipwise.reporting.palette import DIVERGING
 from slipwise.reporting.slip_places import CHANNELS, SlipPlaces, slip_places
 from slipwise.reporting.thinning import thinned
 
-_HEIGHT = 300  # px
+_PATH_POINTS = 400  # of the way driven, below the places
+_HEIGHT = 250  # px
 _SMALLEST, _LARGEST = 4.0, 13.0  # px, of a square
 
 
@@ -61,7 +62,7 @@ def _figure(poses: Poses, places: SlipPlaces, *, key: str, title: str) -> Figure
 
 
 def _path(poses: Poses) -> dict[str, Any]:
-    keep = thinned(len(poses))
+    keep = thinned(len(poses), _PATH_POINTS)
     return {
         "type": "scatter",
         "mode": "lines",

@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-CURVE_POINTS = 2000  # of one curve; more do not show on a screen
+CURVE_POINTS = 800  # of one curve over the page; more cannot be distinguished on a screen
+SMALL_POINTS = 150  # of one curve in a small figure
 
 
 def thinned(length: int, limit: int = CURVE_POINTS) -> NDArray[np.int64]:

@@ -39,7 +39,8 @@ _FIGURE_TEXTS = """
   for (const plot of document.querySelectorAll(".plot")) {
     if (!plot.querySelector(".main-svg") || !plot.checkVisibility()) continue;
     const frame = plot.getBoundingClientRect();
-    const texts = Array.from(plot.querySelectorAll(".xtick text, .ytick text, .xtitle, .ytitle"));
+    const names = ".xtick text, .ytick text, .xtitle, .ytitle, .annotation text";
+    const texts = Array.from(plot.querySelectorAll(names));
     const boxes = texts.map((text) => [text.textContent, text.getBoundingClientRect()]);
     for (const [text, box] of boxes) {
       if (box.left < frame.left - 1 || box.right > frame.right + 1 || box.bottom > frame.bottom + 1) {

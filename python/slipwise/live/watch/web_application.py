@@ -11,7 +11,6 @@ from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from importlib import resources
 
-from plotly.offline import get_plotlyjs
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
@@ -21,6 +20,7 @@ from starlette.types import Receive, Scope, Send
 from slipwise.live.watch.history import History
 from slipwise.live.watch.web_snapshot import snapshot
 from slipwise.reporting.dark_colours import dark_style
+from slipwise.reporting.page import drawing_script
 
 PERIOD = 0.2  # s between two updates at the least
 _ALIVE = 1.0  # s without news until the stream says that it is alive
@@ -130,7 +130,7 @@ def application(history: History, access: Access, ending: threading.Event) -> St
         "/": (html, "text/html"),
         "/live.css": (style, "text/css"),
         "/live.js": (_asset("live.js"), "text/javascript"),
-        "/plotly.js": (get_plotlyjs(), "text/javascript"),
+        "/plotly.js": (drawing_script(), "text/javascript"),
     }
     routes = {path: _fixed(text, kind) for path, (text, kind) in contents.items()}
     routes["/events"] = page.stream

@@ -16,7 +16,7 @@ from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.markup import MINUS, details, legend, missing, paragraph, table
 from slipwise.reporting.palette import ALARM_COLOUR, Stroke, stroke_of, transparent
 from slipwise.reporting.parameter_figures import parameter_figures
-from slipwise.reporting.thinning import thinned
+from slipwise.reporting.thinning import SMALL_POINTS, thinned
 from slipwise.reporting.timeline import Timeline
 
 _MOST_ALARMS = 6
@@ -152,14 +152,14 @@ def _weights_figure(
     """Draw weights [W, N] over time, stacked, the last in the legend; `names`: key and what is weighed."""
     key, what = names
     strokes, weights = shown
-    timeline, keep = Timeline.of(contents.log), thinned(len(history.t))
+    timeline, keep = Timeline.of(contents.log), thinned(len(history.t), SMALL_POINTS)
     traces = [
         {
             "type": "scatter",
             "mode": "lines",
             "name": baseline_label(_NO_SLIP if name == PLAIN else name),
             "x": numbers(timeline.at(history.run[keep], history.t[keep])),
-            "y": numbers(weights[keep, place]),
+            "y": numbers(weights[keep, place].round(4)),
             "stackgroup": "weights",
             "line": {"color": stroke.colour, "width": 0.5},
             "fillcolor": transparent(stroke.colour, 0.75),

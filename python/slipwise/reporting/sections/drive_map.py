@@ -18,13 +18,9 @@ from slipwise.reporting.timeline import Timeline
 
 _MOST_MAPS = 6
 HEIGHT = 235  # px, of a map and of a path
-_SIDES = {  # where a number may stand beside its start, and in which direction
-    "top right": (1.0, 1.0),
-    "bottom right": (1.0, -1.0),
-    "top left": (-1.0, 1.0),
-    "bottom left": (-1.0, -1.0),
-}
-_LABEL_AWAY = 0.06  # of the map's larger side, between a start and its number
+_DRAWN = ((280.0, 135.0), (305.0, 148.0), (410.0, 148.0), (450.0, 160.0))  # px, of the plot on any screen
+_TEXT = (14.0, 20.0)  # px, half a number and the room around it
+_RINGS = (17.0, 30.0, 44.0)  # px from a start to its number
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,14 +36,17 @@ class _Drive:
 
 
 def drive_maps(contents: Contents) -> tuple[list[Figure], str]:
-    """Return a map for each of the longest runs and frames, the longest first, and what is not shown."""
+    """Return a map for each run and frame, that with most starts of paths first, and what is not shown."""
     drives = [drive for place, run in enumerate(contents.log.runs) for drive in _drives(place, run)]
     chosen, timeline = choose_windows(contents), Timeline.of(contents.log)
-    longest = sorted(drives, key=lambda d: -len(d.t))[:_MOST_MAPS]
-    figures = [_figure(place, drive, chosen, timeline) for place, drive in enumerate(longest, start=1)]
+    drives.sort(key=lambda drive: (-len(_starts(drive, chosen)), -len(drive.t)))
+    figures = [
+        _figure(place, drive, _starts(drive, chosen), timeline)
+        for place, drive in enumerate(drives[:_MOST_MAPS], start=1)
+    ]
     if len(drives) <= _MOST_MAPS:
         return figures, ""
-    note = f"The {_MOST_MAPS} longest of {len(drives)} drives are shown; "
+    note = f"Of {len(drives)} drives the {_MOST_MAPS} with the most paths are shown; "
     note += "poses are comparable only inside one frame."
     return figures, note
 
@@ -66,7 +65,7 @@ def _drives(place: int, run: Run) -> list[_Drive]:
     return drives
 
 
-def _figure(place: int, drive: _Drive, chosen: list[ChosenWindow], timeline: Timeline) -> Figure:
+def _figure(place: int, drive: _Drive, starts: list[ChosenWindow], timeline: Timeline) -> Figure:
     keep = thinned(len(drive.t))
     x, y = drive.x[keep], drive.y[keep]
     t = timeline.at(np.full(len(keep), drive.run), drive.t[keep])
@@ -90,45 +89,77 @@ def _figure(place: int, drive: _Drive, chosen: list[ChosenWindow], timeline: Tim
         key=f"map-{place}",
         label=f"Map of the drive {drive.name}",
         heading=f"{drive.name}: the colour is the time [s]",
-        traces=[path, _starts(drive, chosen)],
+        traces=[path, _marks(drive, starts)],
         layout={
             "margin": TOP_BAR_MARGIN,
             "xaxis": axis("x [m]", nticks=7),
             "yaxis": axis("y [m]", scaleanchor="x", scaleratio=1, nticks=7),
+            "annotations": _numbers(drive, starts),
         },
         height=HEIGHT,
         caption=thinning_note(len(drive.t)),
     )
 
 
-def _starts(drive: _Drive, chosen: list[ChosenWindow]) -> dict[str, object]:
-    here = [c for c in chosen if c.run == drive.run and drive.t[0] <= c.t_start <= drive.t[-1]]
-    at = np.array([c.t_start for c in here], dtype=np.float64)
-    x, y = np.interp(at, drive.t, drive.x), np.interp(at, drive.t, drive.y)
+def _starts(drive: _Drive, chosen: list[ChosenWindow]) -> list[ChosenWindow]:
+    return [c for c in chosen if c.run == drive.run and drive.t[0] <= c.t_start <= drive.t[-1]]
+
+
+def _places(drive: _Drive, starts: list[ChosenWindow]) -> Floats:
+    """Return where the paths start, [N, 2] m."""
+    at = np.array([start.t_start for start in starts], dtype=np.float64)
+    return np.column_stack((np.interp(at, drive.t, drive.x), np.interp(at, drive.t, drive.y)))
+
+
+def _marks(drive: _Drive, starts: list[ChosenWindow]) -> dict[str, object]:
+    places = _places(drive, starts)
     return {
         "type": "scatter",
-        "mode": "markers+text",
-        "cliponaxis": False,
-        "x": numbers(x),
-        "y": numbers(y),
-        "text": [str(c.number) for c in here],
-        "textposition": _free_sides(np.column_stack((x, y)), max(np.ptp(drive.x), np.ptp(drive.y))),
-        "textfont": {"size": 14, "color": MEASURED},
-        "marker": {"size": 9, "color": "#ffffff", "line": {"color": MEASURED, "width": 2}},
+        "mode": "markers",
+        "x": numbers(places[:, 0]),
+        "y": numbers(places[:, 1]),
+        "text": [str(start.number) for start in starts],
+        "marker": {"size": 8, "color": "#ffffff", "line": {"color": MEASURED, "width": 2}},
         "hovertemplate": "start of path %{text}<extra></extra>",
     }
 
 
-def _free_sides(points: Floats, size: float) -> list[str]:
-    """Choose for each point [N, 2] the side of its number that is farthest from points and other numbers."""
-    taken = list(points)
-    sides = []
-    for point in points:
-        places = {side: point + _LABEL_AWAY * size * np.array(way) for side, way in _SIDES.items()}
-        room = {
-            side: min(float(np.linalg.norm(place - other)) for other in taken)
-            for side, place in places.items()
-        }
-        sides.append(max(room, key=lambda side: room[side]))
-        taken.append(places[sides[-1]])
-    return sides
+def _numbers(drive: _Drive, starts: list[ChosenWindow]) -> list[dict[str, object]]:
+    """Return the number of each start, a line away from it, where no other number or start is.
+
+    Whether there is room is judged in pixels, for maps on phones and on desks.
+    """
+    places = _places(drive, starts)
+    extent = np.maximum((np.ptp(drive.x), np.ptp(drive.y)), 1e-3)
+    scales = np.array([min(np.array(drawn) / (1.1 * extent)) for drawn in _DRAWN])  # px/m
+    points = scales[:, None, None] * places * (1.0, -1.0)  # [scale, N, 2] px, down positive
+    angles = np.radians(np.arange(-45.0, 315.0, 45.0))
+    ways = np.concatenate([ring * np.column_stack((np.cos(angles), np.sin(angles))) for ring in _RINGS])
+    taken = list(points.swapaxes(0, 1))  # [scale, 2] each: the starts, then the numbers placed
+    shown = []
+    for place, start in enumerate(starts):
+        room = [min(_room(points[:, place] + way, other) for other in taken) for way in ways]
+        free = next((k for k, clear in enumerate(room) if clear >= 1.0), int(np.argmax(room)))
+        taken.append(points[:, place] + ways[free])
+        shown.append(
+            {
+                "x": float(places[place, 0]),
+                "y": float(places[place, 1]),
+                "text": str(start.number),
+                "ax": float(ways[free, 0]),
+                "ay": float(ways[free, 1]),
+                "arrowhead": 0,
+                "arrowwidth": 1,
+                "arrowcolor": MEASURED,
+                "standoff": 5,
+                "borderpad": 0,
+                "bgcolor": "rgba(255,255,255,0.8)",
+                "font": {"size": 13, "color": MEASURED},
+            }
+        )
+    return shown
+
+
+def _room(number: Floats, other: Floats) -> float:
+    """Return how far two things [scale, 2] are apart on the smaller map; they are clear from 1 on."""
+    return float((np.abs(number - other) / _TEXT).max(axis=1).min())

@@ -40,7 +40,11 @@ class GroundSection:
         maps = place_maps(contents.log, part, key="place")
         surfaces = contents.calibration.model.content.surfaces
         rows = bank_table(surfaces) if surfaces else ""
-        return _strip(contents, history) + maps_html([figure.html() for figure in maps]) + rows
+        figures = [figure.html() for figure in maps]
+        if not figures:
+            return _strip(contents, history) + maps_html(figures) + rows
+        beside = f'<div class="double">{_strip(contents, history)}</div>'
+        return maps_html([beside, *figures]) + rows
 
 
 def maps_html(figures: list[str]) -> str:

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.statistics import held_out_half
 from slipwise.ellipse import ellipse
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
@@ -24,7 +25,7 @@ from slipwise.reporting.thinning import thinned
 from slipwise.reporting.timeline import Timeline
 from slipwise.reporting.window_paths import WindowPaths, window_paths
 
-_POINTS = 200  # of one path
+_POINTS = 100  # of one path
 _SHOWN_AT_ONCE = 3  # beside the map; the others are folded away
 
 
@@ -59,23 +60,50 @@ def _folded(*kinds: tuple[Sequence[str], str]) -> str:
     return details(counted, _grid(figures)) if figures else ""
 
 
+def typical_path(contents: Contents) -> str:
+    """Draw the window whose error comes nearest to the mean one; empty where none can be drawn."""
+    drawn, predictions = (
+        _drawn(contents),
+        contents.predictions(contents.learned_method, contents.longest_horizon),
+    )
+    if not drawn or predictions is None:
+        return ""
+    window = _typical(drawn, predictions)
+    return (
+        _legend(contents, predictions.method)
+        + _figure(contents, window, drawn[window], (predictions, Timeline.of(contents.log))).html()
+    )
+
+
+def _typical(drawn: Mapping[ChosenWindow, WindowPaths], predictions: Predictions) -> ChosenWindow:
+    misses = np.linalg.norm(predictions.pose[:, :2] - predictions.measured[:, :2], axis=1)
+    usual = float(np.nanmean(misses[held_out_half(len(misses))]))
+    return min(drawn, key=lambda window: abs(float(misses[window.row]) - usual))
+
+
+def _drawn(contents: Contents) -> dict[ChosenWindow, WindowPaths]:
+    """Return the chosen windows whose paths are in the log, by their numbers."""
+    drawn = window_paths(contents, choose_windows(contents))
+    return dict(sorted(drawn.items(), key=lambda item: item[0].number))
+
+
 def _paths(contents: Contents) -> tuple[str, list[str]]:
-    """Return legend and notes, and the figures."""
+    """Return legend and notes, and the figures but that of the typical path, which stands above."""
     method = contents.learned_method
     predictions = contents.predictions(method, contents.longest_horizon)
-    chosen = choose_windows(contents)
-    if predictions is None or method is None or not chosen:
+    if predictions is None or method is None or not choose_windows(contents):
         return missing(
             "No window was predicted at the longest horizon, so there are no paths to compare."
         ), []
-    drawn = window_paths(contents, chosen)
+    drawn = _drawn(contents)
     if not drawn:
         absent = "The poses or inputs of the predicted windows are not in the log, so no path is drawn."
         return missing(absent), []
-    timeline = Timeline.of(contents.log)
+    timeline, above = Timeline.of(contents.log), _typical(drawn, predictions)
     figures = [
         _figure(contents, window, path, (predictions, timeline)).html()
-        for window, path in sorted(drawn.items(), key=lambda item: item[0].number)
+        for window, path in drawn.items()
+        if window != above
     ]
     return _legend(contents, method) + _notes(list(drawn.values())), figures
 

@@ -11,9 +11,9 @@ from slipwise import _core
 from slipwise.models.model import Model
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure
-from slipwise.reporting.markup import details, missing, paragraph
+from slipwise.reporting.markup import missing
 from slipwise.reporting.sections.coverage import coverage_figure
-from slipwise.reporting.slip_figures import CHANNELS, NODES, SlipGrid, contour_map, turnable_surface
+from slipwise.reporting.slip_figures import CHANNELS, NODES, SlipGrid, contour_map
 
 
 class SurfacesSection:
@@ -26,39 +26,32 @@ class SurfacesSection:
     )
 
     def html(self, contents: Contents) -> str:
-        """Return a map for each channel of slip, the histogram of inputs, and surfaces to be turned."""
+        """Return a map for each channel of slip, and the histogram of inputs."""
         driven = coverage_figure(contents)
         name = "wheel speeds" if contents.evaluation.input == "wheel" else "commands"
         absent = [] if driven else [f"The log has no {name}, so there is no plane of inputs to cover."]
-        maps, surfaces, sentences = _slip(contents.calibration.model)
+        maps, sentences = _slip(contents.calibration.model)
         shown = [*maps, *([driven] if driven else [])]
-        sheets = paragraph(
-            "Drag to turn a surface, pinch or use the wheel to zoom. The grey sheets lie one standard "
-            "deviation above and below.",
-            kind="explanation",
-        )
-        folded = details("Surfaces to be turned", sheets + _side_by_side(surfaces)) if surfaces else ""
-        return _side_by_side(shown) + "".join(missing(text) for text in (*sentences, *absent)) + folded
+        return _side_by_side(shown) + "".join(missing(text) for text in (*sentences, *absent))
 
 
 def _side_by_side(figures: Sequence[Figure]) -> str:
     return f'<div class="grid">{"".join(figure.html() for figure in figures)}</div>' if figures else ""
 
 
-def _slip(model: Model) -> tuple[list[Figure], list[Figure], list[str]]:
-    """Return maps and surfaces of the channels that have slip terms, and sentences about the others."""
+def _slip(model: Model) -> tuple[list[Figure], list[str]]:
+    """Return maps of the channels that have slip terms, and sentences about the others."""
     if not model.motion.slip_size:
-        return [], [], ["The model has no slip terms, so there are no maps of slip."]
+        return [], ["The model has no slip terms, so there are no maps of slip."]
     speed, yaw_rate = model.content.range.speed, model.content.range.yaw_rate
     if speed[1] - speed[0] < 1e-6 or yaw_rate[1] - yaw_rate[0] < 1e-6:
-        return [], [], ["The log holds one speed or one yaw rate only, so slip cannot be drawn over both."]
+        return [], ["The log holds one speed or one yaw rate only, so slip cannot be drawn over both."]
     grid, basis = _grid(model), model.motion.basis
     terms = (basis.lon, basis.lat, basis.ang)
     drawn = [channel for channel in range(len(CHANNELS)) if terms[channel]]
     names = [name for (name, _, _), given in zip(CHANNELS, terms, strict=True) if not given]
     return (
         [contour_map(grid, channel) for channel in drawn],
-        [turnable_surface(grid, channel) for channel in drawn],
         [f"The model has no terms for {name} slip." for name in names],
     )
 

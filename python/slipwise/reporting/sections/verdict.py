@@ -4,51 +4,41 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
-from slipwise.calibration.next_step import check_command, export_command
+from slipwise.calibration.next_step import after_learning, check_command, export_command, verdict_label
 from slipwise.calibration.result import Verdict
-from slipwise.models.summary import summarise
+from slipwise.models.parameter_table import physical_name
+from slipwise.models.summary import BETTER, summarise
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.markup import bullets, escape, number, paragraph
+from slipwise.reporting.markup import bullets, details, escape, number, paragraph
 from slipwise.reporting.method_names import BASELINE
+from slipwise.reporting.sections.paths import typical_path
 from slipwise.reporting.uncertainty import honesty_of
 
-_STATES = {
-    "good": "✓ Good",
-    "partly": "▲ Good, but not everything can be identified",
-    "reserved": "▲ Good, with reservations",
-    "bad": "✕ Not good enough",
-}
+_BANNERS = {"green": ("good", "✓"), "yellow": ("reserved", "▲"), "red": ("bad", "✕")}
+_SHOWN_AT_ONCE = 4  # pieces of advice; the others are folded away
 
 
 class VerdictSection:
     """May the model be used?"""
 
     title = "Does the learned model help?"
-    explanation = (
-        "Judged on held-out windows: each was predicted before anything in it, or one horizon before it, was "
-        "learned."
-    )
+    explanation = "Judged on held-out windows: each was predicted before the model learned from it."
 
     def html(self, contents: Contents) -> str:
-        """Return the verdict, the main errors, what was learned, and what to do."""
+        """Return the verdict, the main errors, a predicted path, what to do, and what was learned."""
         verdict = contents.calibration.verdict
-        state = _state(verdict)
+        words, colour = verdict_label(verdict)
+        state, mark = _BANNERS[colour]
         banner = (
-            f'<div class="verdict {state}" role="status"><strong>{_STATES[state]}</strong>'
+            f'<div class="verdict {state}" role="status"><strong>{mark} {escape(words)}</strong>'
             f"{paragraph(verdict.sentence)}</div>"
         )
-        columns = _column("What was learned", _learned(contents)) + _column("What to do", _to_do(verdict))
-        return banner + _tiles(contents) + f'<div class="columns">{columns}</div>'
-
-
-def _state(verdict: Verdict) -> str:
-    if not verdict.good:
-        return "bad"
-    if verdict.reservations:
-        return "reserved"
-    return "partly" if verdict.not_identifiable else "good"
+        drawn = typical_path(contents)
+        columns = [_column("What to do", _to_do(contents)), _column("What was learned", _learned(contents))]
+        if drawn:
+            columns.insert(0, _column("What was predicted: a typical path", drawn))
+        return banner + _tiles(contents) + f'<div class="columns">{"".join(columns)}</div>'
 
 
 def _tiles(contents: Contents) -> str:
@@ -87,6 +77,8 @@ def _times(learned: float, plain: float) -> str:
     """Say how many times larger or smaller the baseline's error is; empty if that has no meaning."""
     if not (learned > 0.0 and plain > 0.0 and math.isfinite(learned / plain)):
         return ""
+    if max(plain / learned, learned / plain) < BETTER:
+        return ", about the same"
     if plain >= learned:
         return f", {number(plain / learned, 2)} times as much"
     return f", {number(learned / plain, 2)} times less"
@@ -98,17 +90,39 @@ def _column(heading: str, html: str) -> str:
 
 def _learned(contents: Contents) -> str:
     verdict = contents.calibration.verdict
-    sentences = list(summarise(contents.calibration.model).sentences)
+    summary = summarise(contents.calibration.model)
+    sentences = [text for text in summary.sentences if text not in summary.prediction]  # tiles show those
     if verdict.not_identifiable:
-        sentences.append(f"Not identifiable from this log: {', '.join(verdict.not_identifiable)}.")
+        sentences.append(
+            f"Not identifiable from this log: {', '.join(map(physical_name, verdict.not_identifiable))}."
+        )
     return (
         bullets(sentences) if sentences else paragraph("The model has nothing to say: it has no parameters.")
     )
 
 
-def _to_do(verdict: Verdict) -> str:
-    if verdict.good:
-        model = Path("model.yaml")
-        steps = (f"Check it on another day: {check_command(model)}", f"Export it: {export_command(model)}")
-        return bullets((*verdict.advice, *steps))
-    return bullets(("Do not use this model.", *verdict.advice))
+def _to_do(contents: Contents) -> str:
+    """First the check, then the export, then the drives that are missing."""
+    verdict = contents.calibration.verdict
+    if not verdict.good:
+        return bullets(("Do not use this model.", *after_learning(verdict, contents.model))) + _advice(
+            verdict
+        )
+    commands = (
+        ("Check it on another day:", check_command(contents.model)),
+        ("Export it:", export_command(contents.model)),
+    )
+    items = "".join(f"<li>{escape(what)} <code>{_words(command)}</code></li>" for what, command in commands)
+    return f"<ul>{items}</ul>{_advice(verdict)}"
+
+
+def _words(command: str) -> str:
+    """Return a command line that wraps between its words alone, not inside of `--to`."""
+    return " ".join(f"<span>{escape(word)}</span>" for word in command.split(" "))
+
+
+def _advice(verdict: Verdict) -> str:
+    """Return what the terminal says below the next step; what is long is folded away."""
+    texts = [text for text in (*verdict.advice, verdict.timing, verdict.force) if text]
+    first, rest = texts[:_SHOWN_AT_ONCE], texts[_SHOWN_AT_ONCE:]
+    return (bullets(first) if first else "") + (details(f"{len(rest)} more", bullets(rest)) if rest else "")

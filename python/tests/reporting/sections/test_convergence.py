@@ -31,7 +31,7 @@ def test_parameter_that_explains_most_comes_first_with_its_band() -> None:
 def test_weights_of_all_bases_are_stacked() -> None:
     figure = figures_of(ConvergenceSection().html(contents_of(make_results())))["figure-weights"]
     assert [trace["name"] for trace in figure["data"]] == ["no slip", "edd-2", "drive-5"]
-    assert np.allclose(np.sum([trace["y"] for trace in figure["data"]], axis=0), 1.0, atol=1e-5)
+    assert np.allclose(np.sum([trace["y"] for trace in figure["data"]], axis=0), 1.0, atol=3e-4)
 
 
 def test_weights_of_both_ways_to_learn_are_drawn_with_one_basis_or_many() -> None:
@@ -49,7 +49,7 @@ def test_weights_of_both_ways_to_learn_are_drawn_with_one_basis_or_many() -> Non
         html = ConvergenceSection().html(contents_of(learned))
         joint, other = figures_of(html)["figure-structures"]["data"]
         assert (joint["name"], other["name"]) == ("joint", "cascaded")
-        assert np.allclose(other["y"], cascade, atol=1e-5)
+        assert np.allclose(other["y"], cascade, atol=3e-4)
         assert "those of the heavier way, at the end cascaded" in text_of(html)
         assert "cascaded 0.80" in text_of(html)
 

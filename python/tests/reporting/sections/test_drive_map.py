@@ -11,7 +11,6 @@ from reporting.synthetic_results import make_results
 
 from slipwise.logs.log import Log, empty_poses
 from slipwise.reporting.chosen_windows import MOST_WINDOWS
-from slipwise.reporting.sections.drive_map import _SIDES, _free_sides
 from slipwise.reporting.sections.paths import PathsSection
 
 
@@ -27,7 +26,9 @@ def test_map_has_equal_axes_and_starts_at_the_first_pose() -> None:
 
 def test_starts_of_the_shown_paths_are_marked_by_their_numbers() -> None:
     figure = figures_of(PathsSection().html(contents_of(make_results())))["figure-map-1"]
-    assert figure["data"][1]["text"] == [str(n) for n in range(1, MOST_WINDOWS + 1)]
+    numbers = [str(n) for n in range(1, MOST_WINDOWS + 1)]
+    assert figure["data"][1]["text"] == numbers
+    assert [note["text"] for note in figure["layout"]["annotations"]] == numbers
 
 
 def test_every_run_and_frame_has_a_map_of_its_own() -> None:
@@ -40,10 +41,10 @@ def test_every_run_and_frame_has_a_map_of_its_own() -> None:
     assert "field 0, frame 1" in html
 
 
-def test_many_drives_show_the_longest_and_say_so() -> None:
+def test_many_drives_show_those_with_most_paths_and_say_so() -> None:
     html = PathsSection().html(contents_of(make_results(runs=8)))
     assert len(_maps(html)) == 6
-    assert "The 6 longest of 8 drives are shown" in html
+    assert "Of 8 drives the 6 with the most paths are shown" in html
 
 
 def test_far_away_poses_keep_their_shape() -> None:
@@ -68,12 +69,3 @@ def test_times_of_a_later_run_count_from_the_start_of_the_log() -> None:
     figures = figures_of(PathsSection().html(contents_of(results)))
     times = sorted(figures[name]["data"][0]["customdata"][0] for name in ("figure-map-1", "figure-map-2"))
     assert np.allclose(times, [0.0, 119.9], atol=1e-3)
-
-
-def test_numbers_of_starts_keep_clear_of_each_other() -> None:
-    points = np.array([[0.0, 0.0], [0.06, 0.06], [-0.06, 0.06], [0.06, -0.06], [10.0, 0.0]])
-    sides = _free_sides(points, 1.0)
-    assert sides[0] == "bottom left"
-    places = points + 0.06 * np.array([_SIDES[side] for side in sides])
-    apart = np.linalg.norm(places[:, None] - places[None], axis=2) + np.eye(len(places))
-    assert apart.min() > 0.05

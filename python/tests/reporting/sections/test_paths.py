@@ -11,14 +11,15 @@ from reporting.synthetic_results import make_results, without_history
 
 from slipwise.logs.log import Run
 from slipwise.reporting.chosen_windows import MOST_WINDOWS, choose_windows
-from slipwise.reporting.sections.paths import PathsSection
+from slipwise.reporting.sections.paths import PathsSection, typical_path
 from slipwise.reporting.timeline import Timeline
 
 NAMES = ["kinematic baseline", "measured", "slipwise"]
 
 
 def test_each_chosen_window_shows_ellipse_plain_measured_and_predicted() -> None:
-    html = PathsSection().html(contents_of(make_results()))
+    contents = contents_of(make_results())
+    html = typical_path(contents) + PathsSection().html(contents)
     figures = {name: f for name, f in figures_of(html).items() if name.startswith("figure-path")}
     assert len(figures) == MOST_WINDOWS
     for figure in figures.values():
@@ -78,7 +79,7 @@ def test_headings_give_times_from_the_start_of_the_log() -> None:
         evaluation=replace(results.evaluation, predictions=parts),
     )
     contents = contents_of(stamped)
-    text = text_of(PathsSection().html(contents))
+    text = text_of(typical_path(contents) + PathsSection().html(contents))
     assert "17000" not in text
     timeline = Timeline.of(stamped.log)
     for window in choose_windows(contents):
@@ -91,4 +92,15 @@ def test_most_various_paths_are_shown_at_once_whatever_their_run() -> None:
     html = PathsSection().html(contents_of(make_results(runs=3)))
     shown, folded = html.split("<details>")
     assert [n for n in figures_of(shown) if "path" in n] == [f"figure-path-{n}" for n in (1, 2, 3)]
-    assert "6 more paths and 2 more maps" in folded
+    assert "5 more paths and 2 more maps" in folded
+
+
+def test_typical_path_misses_by_about_the_mean_and_is_drawn_once() -> None:
+    contents = contents_of(make_results())
+    auto, score = contents.predictions("auto", 5.0), contents.score("auto", 5.0)
+    assert auto is not None
+    assert score is not None
+    (name,) = figures_of(typical_path(contents))
+    assert name not in figures_of(PathsSection().html(contents))
+    misses = {f"figure-path-{w.number}": float(auto.position_error[w.row]) for w in choose_windows(contents)}
+    assert min(misses, key=lambda key: abs(misses[key] - score.position.mean)) == name

@@ -11,34 +11,20 @@ from slipwise.models.schema import Range, Slip
 from slipwise.reporting.sections.surfaces import SurfacesSection
 
 
-def test_surface_shows_the_slip_with_one_sigma_above_and_below() -> None:
-    figure = figures_of(SurfacesSection().html(contents_of(make_results())))["figure-surface-angular"]
-    mean, above, below = (np.array(trace["z"]) for trace in figure["data"])
-    yaw_rate = np.array(figure["data"][0]["y"])
-    assert np.allclose(mean, -0.348 * yaw_rate[:, None], atol=1e-5)
-    assert np.allclose(above - mean, 0.01 * np.abs(yaw_rate)[:, None], atol=1e-5)
-    assert np.allclose(mean - below, above - mean, atol=1e-5)
-
-
-def test_domain_is_the_range_of_the_model() -> None:
-    surface = figures_of(SurfacesSection().html(contents_of(make_results())))["figure-surface-forward"][
-        "data"
-    ][0]
-    assert (surface["x"][0], surface["x"][-1]) == (0.2, 1.8)
-    assert (surface["y"][0], surface["y"][-1]) == (-0.7, 0.7)
-
-
-def test_contours_show_the_same_slip() -> None:
+def test_maps_show_the_slip_with_its_sigma_over_the_range_of_the_model() -> None:
     figures = figures_of(SurfacesSection().html(contents_of(make_results())))
-    assert (
-        figures["figure-contours-forward"]["data"][0]["z"]
-        == figures["figure-surface-forward"]["data"][0]["z"]
-    )
+    yaw = figures["figure-contours-angular"]["data"][0]
+    yaw_rate = np.array(yaw["y"])
+    assert np.allclose(yaw["z"], -0.348 * yaw_rate[:, None], atol=1e-5)
+    assert np.allclose(yaw["customdata"], 0.01 * np.abs(yaw_rate)[:, None], atol=1e-5)
+    forward = figures["figure-contours-forward"]["data"][0]
+    assert (forward["x"][0], forward["x"][-1]) == (0.2, 1.8)
+    assert (forward["y"][0], forward["y"][-1]) == (-0.7, 0.7)
 
 
 def test_channel_without_terms_is_named() -> None:
     html = SurfacesSection().html(contents_of(make_results()))
-    assert "figure-surface-sideways" not in figures_of(html)
+    assert "figure-contours-sideways" not in figures_of(html)
     assert "The model has no terms for sideways slip." in html
 
 

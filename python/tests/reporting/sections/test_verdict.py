@@ -6,9 +6,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from reporting.page_parts import contents_of, text_of
+from reporting.page_parts import contents_of, figures_of, text_of
 from reporting.synthetic_results import make_results, with_model, with_verdict
 
+from slipwise.calibration.next_step import verdict_label
 from slipwise.calibration.result import Verdict
 from slipwise.models.summary import summarise
 from slipwise.reporting.sections.verdict import VerdictSection
@@ -18,7 +19,7 @@ from slipwise.reporting.sections.verdict import VerdictSection
     ("verdict", "state"),
     [
         (Verdict(True, "Fine."), "good"),
-        (Verdict(True, "Fine.", ("lat.w",), ("Turn on the spot.",)), "partly"),
+        (Verdict(True, "Fine.", ("lat.w",), ("Turn on the spot.",)), "good"),
         (Verdict(True, "Fine.", reservations=("Its reported uncertainty is too small.",)), "reserved"),
         (Verdict(False, "No.", ("lat.w",)), "bad"),
     ],
@@ -32,7 +33,10 @@ def test_verdict_names_what_is_not_determined_and_the_drive_that_would() -> None
     verdict = Verdict(True, "Fine.", ("lat.w", "ang.V"), ("Turn on the spot.",))
     text = text_of(VerdictSection().html(contents_of(with_verdict(make_results(), verdict))))
     assert "Not identifiable from this log: lat.w, ang.V." in text
-    assert "What to do Turn on the spot. Check it on another day" in text
+    assert (
+        "What to do Check it on another day: slipwise evaluate OTHER_LOG --model model.yaml "
+        "Export it: slipwise export model.yaml --to all -o config Turn on the spot." in text
+    )
 
 
 def test_errors_stand_beside_those_of_the_baseline_model() -> None:
@@ -58,18 +62,41 @@ def test_errors_are_those_of_the_method_that_was_calibrated() -> None:
     assert f"Position error after 5 s {error:.4f} m" in text_of(VerdictSection().html(contents))
 
 
+@pytest.mark.parametrize("reservations", [(), ("It answers late.",)])
+@pytest.mark.parametrize("good", [True, False])
+def test_banner_says_what_the_terminal_says(good: bool, reservations: tuple[str, ...]) -> None:
+    verdict = Verdict(good, "Fine or not.", reservations=reservations)
+    text = text_of(VerdictSection().html(contents_of(with_verdict(make_results(), verdict))))
+    assert f"{verdict_label(verdict)[0]} Fine or not." in text
+
+
+def test_three_paths_are_on_the_first_screen() -> None:
+    html = VerdictSection().html(contents_of(make_results()))
+    (figure,) = figures_of(html).values()
+    assert [trace["name"] for trace in figure["data"] if "name" in trace] == [
+        "kinematic baseline",
+        "measured",
+        "slipwise",
+    ]
+    assert "measured kinematic baseline slipwise 95 % ellipse" in text_of(html)
+
+
 def test_what_was_learned_is_said_in_the_words_of_the_summary() -> None:
     results = make_results()
     text = text_of(VerdictSection().html(contents_of(results)))
-    sentences = summarise(results.calibration.model).sentences
-    assert sentences
-    assert all(sentence in text for sentence in sentences)
+    summary = summarise(results.calibration.model)
+    learned = set(summary.sentences) - set(summary.prediction)
+    assert learned
+    assert all(sentence in text for sentence in learned)
 
 
 def test_bad_model_is_not_to_be_used_or_exported() -> None:
     verdict = Verdict(False, "No.", (), ("Record wheel speeds.",))
     text = text_of(VerdictSection().html(contents_of(with_verdict(make_results(), verdict))))
-    assert "What to do Do not use this model. Record wheel speeds." in text
+    assert (
+        "What to do Do not use this model. Next: do what the lines below say, then calibrate again. "
+        "Record wheel speeds." in text
+    )
     assert "slipwise export" not in text
 
 
