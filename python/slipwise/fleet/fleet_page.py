@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of a fleet: vehicles side by side, drift, what stands out, and logs that could not be used."""
+"""The page of a fleet: a table of vehicles, what stands out, charts, and logs that could not be used."""
 
 from __future__ import annotations
 
@@ -17,13 +17,28 @@ from slipwise.fleet.findings import (
     ParameterFindings,
     rows_by_parameter,
 )
+from slipwise.fleet.vehicle_numbers import logs_of, types_apart
+from slipwise.models.parameter_table import physical_name
+from slipwise.number_text import DASH
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
-from slipwise.reporting.markup import bullets, missing, number, table
+from slipwise.reporting.markup import bullets, details, escape, missing, number, paragraph, scrolling, table
 from slipwise.reporting.page import Part, page_of
 from slipwise.reporting.thinning import CURVE_POINTS, thinned
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7a4fa3", "#4d4d4d")
 FLEET = "#1b2430"
+SHOWN_AT_ONCE = 8  # charts of a section; the others are folded away
+_SHOWN = (  # heading, number of a vehicle, its scale and unit
+    ("drives", "drives", 100.0, " %"),
+    ("turns", "turns", 100.0, " %"),
+    ("separation<br>multiplier", "multiplier", 1.0, ""),
+    ("lag of<br>speed", "lag_speed", 1.0, " s"),
+    ("lag of<br>yaw rate", "lag_turn", 1.0, " s"),
+    ("error", "error", 1.0, " m"),
+    ("baseline's", "baseline", 1.0, " m"),
+    ("heading<br>error", "error_heading", float(np.degrees(1.0)), "°"),
+    ("baseline's", "baseline_heading", float(np.degrees(1.0)), "°"),
+)
 TWO_SIGMA = 2.0
 FEWEST_POINTS = 20  # of a vehicle that are drawn of one parameter
 MOST_ROWS = 500  # of unusable logs that are listed
@@ -37,9 +52,17 @@ def fleet_page(
 ) -> str:
     """Return one self-contained HTML page that works offline."""
     rows = rows_by_parameter(columns) if columns else {}
+    ordered = sorted(findings, key=_difference, reverse=True)
+    none = missing("There is no log that could be used.")
+    beside = [_side_by_side(columns, each, rows[each.parameter]).html() for each in ordered]
+    course = [_over_time(columns, each, rows[each.parameter]).html() for each in ordered]
     parts = (
         Part(
-            "The fleet", "What was learned of how many logs.", bullets(summary(columns, findings, unusable))
+            "The fleet",
+            "The median of each vehicle's logs, below it their least and most. It drives and turns so much "
+            "of what is commanded, or of what the wheels say; a lag is the time to 63 % of a step; errors are "
+            "those of held-out predictions at the longest horizon.",
+            bullets(summary(columns, findings, unusable)) + (_vehicles(columns) if columns else ""),
         ),
         Part(
             "What stands out",
@@ -49,22 +72,55 @@ def fleet_page(
         ),
         Part(
             "Vehicles side by side",
-            "Logs with two standard deviations, evenly thinned where there are many, and what the fleet "
-            "expects of its next robot.",
-            "".join(_side_by_side(columns, each, rows[each.parameter]).html() for each in findings)
-            or missing("There is no log that could be used."),
-            folded=True,
+            "Logs with two standard deviations, what differs most between vehicles first; lines: what the "
+            "fleet expects of its next robot.",
+            _charts(beside) or none,
         ),
-        Part(
-            "Over time",
-            "The same values by the day of the log.",
-            "".join(_over_time(columns, each, rows[each.parameter]).html() for each in findings)
-            or missing("There is no log that could be used."),
-            folded=True,
-        ),
+        Part("Over time", "The same values by the day of the log.", _charts(course) or none, folded=True),
         Part("Logs that could not be used", "And why.", _unusable(unusable), folded=True),
     )
     return page_of("A fleet", "slipwise fleet", parts)
+
+
+def _charts(figures: Sequence[str]) -> str:
+    """Show the first charts and fold the others away."""
+    first, rest = (
+        f'<div class="grid">{"".join(some)}</div>' if some else ""
+        for some in (figures[:SHOWN_AT_ONCE], figures[SHOWN_AT_ONCE:])
+    )
+    return first + (details(f"{len(figures) - SHOWN_AT_ONCE} more parameters", rest) if rest else "")
+
+
+def _difference(found: ParameterFindings) -> float:
+    """Return how much vehicles differ in a parameter, in standard deviations of what is known of each."""
+    return float(np.std(found.estimate) / max(float(np.median(found.std)), 1e-12))
+
+
+def _vehicles(columns: Columns) -> str:
+    """Return the table of vehicles, and a warning where they look like two types of robot."""
+    rows = []
+    for vehicle, of in logs_of(columns).items():
+        hours, good = float(columns["seconds"][of].sum()) / 3600.0, int(columns["good"][of].sum())
+        cells = [_spread(columns, name, of, scale, unit) for _, name, scale, unit in _SHOWN]
+        cells += [f"{len(of)}<small>{good} good</small>", f"{number(hours, 2)} h"]
+        body = "".join(f"<td>{cell}</td>" for cell in cells)
+        rows.append(f'<tr><th scope="row">{escape(vehicle)}</th>{body}</tr>')
+    heads = ("vehicle", *(head for head, *_ in _SHOWN), "logs", "driven")
+    head = "".join(f'<th scope="col">{each}</th>' for each in heads)
+    html = f'<table class="scores"><thead><tr>{head}</tr></thead><tbody>{"".join(rows)}</tbody></table>'
+    warned = types_apart(columns)
+    warning = f'<div class="verdict reserved">{paragraph(warned)}</div>' if warned else ""
+    return warning + scrolling(html)
+
+
+def _spread(columns: Columns, name: str, rows: NDArray[np.int64], scale: float, unit: str) -> str:
+    """Return the median over a vehicle's logs, and their least and most where they differ."""
+    values = scale * columns[name][rows].astype(float)
+    values = values[np.isfinite(values)]
+    if not len(values):
+        return DASH
+    low, middle, high = (number(float(value), 2) for value in np.quantile(values, (0.0, 0.5, 1.0)))
+    return f"{middle}{unit}" + (f"<small>{low} to {high}</small>" if low != high else "")
 
 
 def summary(
@@ -87,7 +143,8 @@ def summary(
         f"{len(alarms)} alarms of {tests} tests. A vehicle is compared with the others where there are three "
         f"or more, its drift is tested from {FEWEST_LOGS} logs on."
     )
-    return [driven, f"{len(unusable)} logs could not be used.", tested]
+    left = "1 log" if len(unusable) == 1 else f"{len(unusable)} logs"
+    return [driven, *([f"{left} could not be used."] if unusable else []), tested]
 
 
 def _alarms(findings: Sequence[ParameterFindings]) -> str:
@@ -104,9 +161,22 @@ def _alarms(findings: Sequence[ParameterFindings]) -> str:
 
 def _alarm_row(finding: Finding, unit: str) -> tuple[str, ...]:
     what = "unlike the others" if finding.kind == "odd" else "drifts, per 30 days"
-    size, std = f"{number(finding.size)} {unit}", f"{number(finding.std)} {unit}"
-    walk, now = number(finding.walk), number(finding.now)
-    return finding.vehicle, finding.parameter, what, size, std, number(finding.chance), walk, now
+    name, logarithm = physical_name(finding.parameter), _logarithm(finding.parameter)
+    size, std, walk = (
+        f"{number(100.0 * np.expm1(value))} %" if logarithm else f"{number(value)} {unit}"
+        for value in (finding.size, finding.std, finding.walk)
+    )
+    now = number(float(_physical(finding.parameter, np.array([finding.now]))[0]))
+    return finding.vehicle, name, what, size, std, number(finding.chance), walk, now
+
+
+def _logarithm(parameter: str) -> bool:
+    """Say whether a parameter is learned as a logarithm; it is shown in its own unit."""
+    return physical_name(parameter) != parameter
+
+
+def _physical(parameter: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.exp(values) if _logarithm(parameter) else values
 
 
 def _side_by_side(columns: Columns, found: ParameterFindings, rows: Rows) -> Figure:
@@ -114,12 +184,13 @@ def _side_by_side(columns: Columns, found: ParameterFindings, rows: Rows) -> Fig
     for place, vehicle in enumerate(found.vehicles):
         drawn = _drawn(rows[vehicle], len(found.vehicles))
         label = baseline_label(vehicle)
-        traces.append(_points(columns, drawn, vehicle, place) | {"x": [label] * len(drawn)})
+        traces.append(_points(columns, drawn, found.parameter, place) | {"x": [label] * len(drawn)})
     if found.prior is not None:
         mean = float(found.prior.mean[0])
         spread = TWO_SIGMA * float(np.sqrt(found.prior.new_robot[0, 0]))
         labels = [baseline_label(vehicle) for vehicle in found.vehicles]
-        for value, dash in ((mean, "solid"), (mean - spread, "dot"), (mean + spread, "dot")):
+        ends = _physical(found.parameter, np.array((mean, mean - spread, mean + spread))).tolist()
+        for value, dash in zip(ends, ("solid", "dot", "dot"), strict=True):
             line = {"color": FLEET, "dash": dash, "width": 1.2}
             traces.append(
                 {
@@ -139,20 +210,20 @@ def _over_time(columns: Columns, found: ParameterFindings, rows: Rows) -> Figure
         drawn = _drawn(rows[vehicle], len(found.vehicles))
         start = columns["start"][drawn].astype(float)
         days = [datetime.fromtimestamp(t, UTC).strftime("%Y-%m-%d %H:%M:%S") for t in start.tolist()]
-        traces.append(_points(columns, drawn, vehicle, place) | {"x": days})
+        traces.append(_points(columns, drawn, found.parameter, place) | {"x": days})
     layout = axis("day", type="date")
     return _figure("time", found, traces, layout)
 
 
 def _figure(key: str, found: ParameterFindings, traces: list[dict[str, Any]], x: dict[str, Any]) -> Figure:
-    unit = "" if found.unit == "-" else f" [{found.unit}]"
+    unit, name = found.unit.removeprefix("ln "), physical_name(found.parameter)
     return Figure(
         key=f"{key}-{found.parameter}",
-        label=f"{found.parameter} of every vehicle",
-        heading=found.parameter,
+        label=f"{name} of every vehicle",
+        heading=name,
         traces=traces,
-        layout={"xaxis": x, "yaxis": axis(f"value{unit}")},
-        height=260,
+        layout={"xaxis": x, "yaxis": axis(f"[{unit}]", small=True)},
+        height=220,
     )
 
 
@@ -161,14 +232,16 @@ def _drawn(rows: NDArray[np.int64], vehicles: int) -> NDArray[np.int64]:
     return rows[thinned(len(rows), max(FEWEST_POINTS, CURVE_POINTS // vehicles))]
 
 
-def _points(columns: Columns, rows: NDArray[np.int64], vehicle: str, place: int) -> dict[str, Any]:
+def _points(columns: Columns, rows: NDArray[np.int64], parameter: str, place: int) -> dict[str, Any]:
+    value, std = columns["value"][rows].astype(float), columns["std"][rows].astype(float)
+    shown, low, high = (_physical(parameter, value + times * std) for times in (0.0, -TWO_SIGMA, TWO_SIGMA))
     return {
         "type": "scatter",
         "mode": "markers",
-        "y": numbers(columns["value"][rows].astype(float)),
-        "error_y": {"type": "data", "array": numbers(TWO_SIGMA * columns["std"][rows].astype(float))},
+        "y": numbers(shown),
+        "error_y": {"type": "data", "array": numbers(high - shown), "arrayminus": numbers(shown - low)},
         "marker": {"color": COLOURS[place % len(COLOURS)]},
-        "name": baseline_label(vehicle),
+        "name": baseline_label(str(columns["vehicle"][rows[0]])),
     }
 
 

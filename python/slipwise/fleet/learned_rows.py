@@ -20,6 +20,7 @@ from slipwise.errors import LogError, SlipwiseError
 from slipwise.files import sha256_of
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.knowledge_file import knowledge_text
+from slipwise.fleet.vehicle_numbers import VehicleNumbers, vehicle_numbers
 from slipwise.logs import Log, open_log
 from slipwise.logs.remote import lent, remote_version
 from slipwise.models.model import Model
@@ -57,6 +58,7 @@ class LogRows:
     good: bool = False
     verdict: str = ""
     rows: tuple[Row, ...] = ()
+    numbers: VehicleNumbers = VehicleNumbers()
     failure: str = ""  # why there are no rows
     known: bool = False  # a log on a server is that which was learned before
     tag: str = ""  # of the version on the server
@@ -105,6 +107,7 @@ def _learned(task: LogTask, settings: Settings, changed: float) -> LogRows:
         good=calibration.verdict.good,
         verdict=calibration.verdict.sentence,
         rows=_rows(calibration.model),
+        numbers=vehicle_numbers(calibration.model),
         knowledge="" if known is None else knowledge_text(known),
     )
 

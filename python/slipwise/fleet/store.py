@@ -22,6 +22,7 @@ from slipwise.calibration.log_knowledge import LogKnowledge
 from slipwise.files import output_errors, write_text_whole, write_whole
 from slipwise.fleet.knowledge_file import knowledge_from
 from slipwise.fleet.learned_rows import LogRows, Row
+from slipwise.fleet.vehicle_numbers import NAMES
 
 ROWS, UNUSABLE, KNOWLEDGE, ADDRESSES = "rows", "unusable", "knowledge", "addresses"
 SET_ASIDE = "set-aside"  # what could not be read
@@ -39,7 +40,9 @@ COLUMNS = (
     "unit",
     "value",
     "std",
+    *NAMES,
 )
+_TEXTS = ("vehicle", "month", "key", "parameter", "unit")
 PARTS = "vehicle=*/month=*/*.parquet"  # not those in the making, which lie in hidden folders
 AT_ONCE = 500  # files
 MOST_KNOWN = 4000  # logs that the prior is made of, so that the driver's memory stays bounded
@@ -234,9 +237,11 @@ def _read(paths: list[Path]) -> dict[str, NDArray[Any]]:
     import pyarrow as pa
     import pyarrow.dataset as dataset
 
-    of_folders = pa.schema([("vehicle", pa.string()), ("month", pa.string())])
+    types = {name: pa.string() for name in _TEXTS} | {"good": pa.bool_()}
+    schema = pa.schema([(name, types.get(name, pa.float64())) for name in COLUMNS])  # older files lack some
+    of_folders = pa.schema([schema.field("vehicle"), schema.field("month")])
     partitioned = dataset.partitioning(flavor="hive", schema=of_folders)
-    files = dataset.dataset(list(map(str, paths)), format="parquet", partitioning=partitioned)
+    files = dataset.dataset(list(map(str, paths)), schema=schema, format="parquet", partitioning=partitioned)
     table = files.to_table(list(COLUMNS))
     return {
         name: np.array(list(map(intern, table[name].to_pylist())), dtype=object)
@@ -250,5 +255,5 @@ def _write(path: Path, learned: LogRows) -> None:
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
-    of_log = {name: getattr(learned, name) for name in (*_OF_LOG, *_OF_VERDICT)}
+    of_log = {name: getattr(learned, name) for name in (*_OF_LOG, *_OF_VERDICT)} | asdict(learned.numbers)
     parquet.write_table(pa.Table.from_pylist([of_log | asdict(row) for row in learned.rows]), path)

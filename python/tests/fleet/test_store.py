@@ -6,10 +6,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+import pyarrow.parquet as parquet
 import pytest
 from fleet.work_samples import sample_rows
 
 from slipwise.fleet import Store
+from slipwise.fleet.vehicle_numbers import NAMES, VehicleNumbers
 
 OTHER = "fedcba9876543210-0123456789abcdef"
 
@@ -28,6 +31,15 @@ def test_table_holds_a_row_per_log_and_parameter(tmp_path: Path) -> None:
     assert table["parameter"].tolist() == ["ang.w", "lon.V"] * 2
     assert table["value"].tolist() == [-0.3, -0.1] * 2
     assert table["month"].tolist() == ["2026-12", "2026-12", "2026-11", "2026-11"]
+
+
+def test_rows_of_an_older_version_have_no_numbers_of_the_vehicle(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    path = store.add(sample_rows(numbers=VehicleNumbers(turns=0.5)))
+    assert store.table()["turns"].tolist() == [0.5, 0.5]
+    parquet.write_table(parquet.read_table(path).drop_columns(list(NAMES)), path)
+    assert np.isfinite(store.table()["value"]).all()
+    assert np.isnan(store.table()["turns"]).all()
 
 
 def test_unusable_log_keeps_its_reason_and_is_known(tmp_path: Path) -> None:
