@@ -64,15 +64,18 @@ def check_law(speed: Floats, command: float, gain: float, part: float) -> None:
 MODELS = list(product(LAGS, FRACTIONS, GAINS, DELAYS))
 
 
-@pytest.mark.parametrize("before", [0.0, 0.05, 0.7], ids=["first command", "just begun", "begun"])
-@pytest.mark.parametrize("command", [1.0, -0.7])
-def test_predicted_speed_stays_between_rest_and_command(command: float, before: float) -> None:
-    for lags, fraction, gain, delay in MODELS[::11]:
-        model = two_modes(lags, fraction, gain, delay)
-        for part in PARTS:
-            initial = (part * gain * command, 0.0)
-            path = predict(model, [(0.0, command, 0.0)], horizon=2.0, start=before, initial=initial)
-            check_law(speeds(path.poses, 0.1), command, gain, part)
+def test_predicted_speed_stays_between_rest_and_command(subtests: pytest.Subtests) -> None:
+    for before in [0.0, 0.05, 0.7]:
+        for command in [1.0, -0.7]:
+            with subtests.test(before=before, command=command):
+                for lags, fraction, gain, delay in MODELS[::11]:
+                    model = two_modes(lags, fraction, gain, delay)
+                    for part in PARTS:
+                        initial = (part * gain * command, 0.0)
+                        path = predict(
+                            model, [(0.0, command, 0.0)], horizon=2.0, start=before, initial=initial
+                        )
+                        check_law(speeds(path.poses, 0.1), command, gain, part)
 
 
 @pytest.mark.parametrize("before", [0.0, 0.05, 0.7])
@@ -93,19 +96,20 @@ def test_limits_keep_the_law(before: float) -> None:
             check_law(speeds(path.poses, 0.1), 1.0, 0.9, part)
 
 
-@pytest.mark.parametrize("limited", [False, True])
-@pytest.mark.parametrize("command", [1.0, -0.7])
-@pytest.mark.parametrize("sent", [0, 1, 14])
-def test_rollouts_keep_the_law(sent: int, command: float, limited: bool) -> None:
-    past = np.tile([command, 0.0], (sent, 1)) if sent else None
-    for lags, fraction, gain, delay in MODELS[::13]:
-        model = two_modes(lags, fraction, gain, delay, limited)
-        for part in PARTS:
-            start = Start(drive=(part * gain * command, 0.0), past=past)
-            path = rollout(model, np.tile([command, 0.0], (1, 40, 1)), 0.05, start=start).path
-            assert path is not None
-            poses = np.vstack((np.zeros((1, 3)), path[:, :, 0].T))
-            check_law(speeds(poses, 0.05), command, gain, part)
+def test_rollouts_keep_the_law(subtests: pytest.Subtests) -> None:
+    for limited in [False, True]:
+        for command in [1.0, -0.7]:
+            for sent in [0, 1, 14]:
+                with subtests.test(limited=limited, command=command, sent=sent):
+                    past = np.tile([command, 0.0], (sent, 1)) if sent else None
+                    for lags, fraction, gain, delay in MODELS[::13]:
+                        model = two_modes(lags, fraction, gain, delay, limited)
+                        for part in PARTS:
+                            start = Start(drive=(part * gain * command, 0.0), past=past)
+                            path = rollout(model, np.tile([command, 0.0], (1, 40, 1)), 0.05, start=start).path
+                            assert path is not None
+                            poses = np.vstack((np.zeros((1, 3)), path[:, :, 0].T))
+                            check_law(speeds(poses, 0.05), command, gain, part)
 
 
 @pytest.mark.parametrize(("sent", "limited"), [(0, False), (3, False), (14, False), (0, True)])

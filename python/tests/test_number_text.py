@@ -6,17 +6,20 @@ import pytest
 from slipwise.number_text import estimate_text, number_text
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(0.0, "0"), (1234.5, "1234"), (0.012345, "0.0123"), (1e-9, "1e-09"), (float("nan"), "–")],
-)
-def test_numbers_have_three_digits(value: float, text: str) -> None:
-    assert number_text(value) == text
+def test_numbers_have_three_digits(subtests: pytest.Subtests) -> None:
+    for value, text in [
+        (0.0, "0"),
+        (1234.5, "1234"),
+        (0.012345, "0.0123"),
+        (1e-9, "1e-09"),
+        (float("nan"), "–"),
+    ]:
+        with subtests.test(value=value, text=text):
+            assert number_text(value) == text
 
 
-@pytest.mark.parametrize(
-    ("value", "std", "text"),
-    [
+def test_an_estimate_ends_where_its_standard_deviation_does(subtests: pytest.Subtests) -> None:
+    for value, std, text in [
         (1.6789, 0.0234, "1.68 ± 0.02"),
         (0.18234, 0.0152, "0.182 ± 0.015"),
         (-0.05, 0.000035, "-0.05000 ± 0.00003"),
@@ -26,10 +29,9 @@ def test_numbers_have_three_digits(value: float, text: str) -> None:
         (0.5, 0.0, "0.500 ± 0"),
         (0.5, float("nan"), "0.500 ± –"),
         (3.0, 1.3e7, "3 ± 1.3e+07"),
-    ],
-)
-def test_an_estimate_ends_where_its_standard_deviation_does(value: float, std: float, text: str) -> None:
-    assert estimate_text(value, std) == text
+    ]:
+        with subtests.test(value=value, std=std, text=text):
+            assert estimate_text(value, std) == text
 
 
 def test_what_a_computation_rounds_off_is_zero() -> None:

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import ArrayLike
 from sample_logs import Drive, held, simulated_log
 from sample_models import make_model, named
 
@@ -36,11 +35,12 @@ def model() -> Model:
     return learned("full-linear-6", "command")
 
 
-@pytest.mark.parametrize("input_name", ["command", "wheel"])
-@pytest.mark.parametrize("basis", BASES)
-def test_zero_command_gives_zero_motion(basis: str, input_name: str) -> None:
-    path = predict(learned(basis, input_name), np.zeros((1, 3)), horizon=3.0)
-    assert np.array_equal(path.poses, np.zeros((31, 3)))
+def test_zero_command_gives_zero_motion(subtests: pytest.Subtests) -> None:
+    for input_name in ["command", "wheel"]:
+        for basis in BASES:
+            with subtests.test(input_name=input_name, basis=basis):
+                path = predict(learned(basis, input_name), np.zeros((1, 3)), horizon=3.0)
+                assert np.array_equal(path.poses, np.zeros((31, 3)))
 
 
 def test_path_has_a_pose_every_tenth_and_at_the_horizon(model: Model) -> None:
@@ -132,9 +132,8 @@ def test_rows_and_inputs_are_the_same_commands(model: Model) -> None:
     assert one.tobytes() == other.tobytes()
 
 
-@pytest.mark.parametrize(
-    "commands",
-    [
+def test_commands_of_a_wrong_kind_are_refused_with_advice(model: Model, subtests: pytest.Subtests) -> None:
+    for commands in [
         np.zeros(3),
         np.zeros((0, 3)),
         np.zeros((4, 2)),
@@ -145,11 +144,12 @@ def test_rows_and_inputs_are_the_same_commands(model: Model) -> None:
         [[0.0, 1.0, 0.0], [0.0, 2.0, 0.0]],
         [["a", "b", "c"]],
         [[0.0, 1.0], [2.0]],
-    ],
-)
-def test_commands_of_a_wrong_kind_are_refused_with_advice(model: Model, commands: ArrayLike) -> None:
-    with pytest.raises(SettingsError, match=r"commands .* numpy.column_stack"):
-        predict(model, commands, horizon=1.0)
+    ]:
+        with (
+            subtests.test(commands=commands),
+            pytest.raises(SettingsError, match=r"commands .* numpy.column_stack"),
+        ):
+            predict(model, commands, horizon=1.0)
 
 
 @pytest.mark.parametrize("horizon", [0.0, -1.0, float("nan"), float("inf")])

@@ -18,12 +18,15 @@ TABLE = [
 ]
 
 
-@pytest.mark.parametrize(("dof", "three", "two"), TABLE)
-def test_ellipsoids_are_those_of_the_tables_of_f(dof: float, three: float, two: float) -> None:
-    to_covariance = (dof - 2.0) / dof
-    assert float(fraction_inside(3.0 * three * to_covariance, dof)[0]) == pytest.approx(0.95, abs=5e-6)
-    assert ellipsoid_squared(0.95, dof) == pytest.approx(3.0 * three * to_covariance, rel=5e-5)
-    assert ellipse_squared(0.95, dof) == pytest.approx(2.0 * two * to_covariance, rel=5e-5)
+def test_ellipsoids_are_those_of_the_tables_of_f(subtests: pytest.Subtests) -> None:
+    for dof, three, two in TABLE:
+        with subtests.test(dof=dof, three=three, two=two):
+            to_covariance = (dof - 2.0) / dof
+            assert float(fraction_inside(3.0 * three * to_covariance, dof)[0]) == pytest.approx(
+                0.95, abs=5e-6
+            )
+            assert ellipsoid_squared(0.95, dof) == pytest.approx(3.0 * three * to_covariance, rel=5e-5)
+            assert ellipse_squared(0.95, dof) == pytest.approx(2.0 * two * to_covariance, rel=5e-5)
 
 
 def test_share_goes_from_nothing_to_all_and_has_the_shape_of_its_input() -> None:

@@ -126,9 +126,8 @@ def test_what_the_model_does_not_remember_is_refused(model: Model) -> None:
         rollout(bare, np.ones((1, 2, 2)), 0.1, start=Start(terrain_ahead=AHEAD))
 
 
-@pytest.mark.parametrize(
-    ("distance", "probability", "said"),
-    [
+def test_what_is_no_terrain_ahead_is_refused(subtests: pytest.Subtests) -> None:
+    for distance, probability, said in [
         ([0.5], {"sand": 1.0}, "begin with 0"),
         ([0.0, 0.0], {"sand": 1.0}, "increase"),
         ([], {"sand": 1.0}, "begin with 0"),
@@ -138,13 +137,12 @@ def test_what_the_model_does_not_remember_is_refused(model: Model) -> None:
         ([0.0, 1.0], {"sand": [0.1, 0.2, 0.3]}, "3 probabilities of sand for 2 stretches"),
         ([0.0], {"sand": float("nan")}, "not finite"),
         ([0.0, "x"], {"sand": 1.0}, "no numbers"),
-    ],
-)
-def test_what_is_no_terrain_ahead_is_refused(
-    distance: list[float], probability: dict[str, float], said: str
-) -> None:
-    with pytest.raises(SettingsError, match=said):
-        TerrainAhead(distance, probability)
+    ]:
+        with (
+            subtests.test(distance=distance, probability=probability, said=said),
+            pytest.raises(SettingsError, match=said),
+        ):
+            TerrainAhead(distance, probability)
 
 
 def test_what_was_passed_is_no_longer_ahead() -> None:

@@ -2,7 +2,6 @@
 """Wrong documents are refused in slipwise's words; those of the checking library never reach a user."""
 
 import re
-from typing import Any
 
 import pytest
 
@@ -14,9 +13,8 @@ FOREIGN = re.compile(
 )
 
 
-@pytest.mark.parametrize(
-    ("content", "words"),
-    [
+def test_wrong_settings_are_named_in_plain_words(subtests: pytest.Subtests) -> None:
+    for content, words in [
         ({"estimator": "magic"}, "estimator: unknown estimator 'magic'; known are average"),
         ({"filter": {"huber": -1.0}}, "filter.huber: must be at least 1e-09, not -1.0"),
         ({"prior": {"slip_fraction": 11}}, "prior.slip_fraction: must be at most 10, not 11"),
@@ -37,14 +35,13 @@ FOREIGN = re.compile(
         ({"noise": {"psd_time": [1.0]}}, "noise.psd_time: needs at least 3 entries"),
         ({"colour": 1}, "colour: there is no such key"),
         ({"basis": 3}, "basis: must be text, not 3"),
-    ],
-)
-def test_wrong_settings_are_named_in_plain_words(content: dict[str, Any], words: str) -> None:
-    with pytest.raises(SettingsError) as caught:
-        make_settings(content)
-    assert caught.value.what.startswith(words)
-    assert caught.value.advice
-    assert not FOREIGN.search(str(caught.value))
+    ]:
+        with subtests.test(content=content, words=words):
+            with pytest.raises(SettingsError) as caught:
+                make_settings(content)
+            assert caught.value.what.startswith(words)
+            assert caught.value.advice
+            assert not FOREIGN.search(str(caught.value))
 
 
 def test_a_long_wrong_value_is_shortened() -> None:

@@ -47,9 +47,10 @@ def test_what_gains_from_one_input_gains() -> None:
     assert ablation.largest_gain(scores(0.1, 0.2), default) == 0.0
 
 
-@pytest.mark.parametrize("mechanism", [*MECHANISMS, LIMITS, CALIBRATION], ids=lambda m: m.variant.name)
-def test_what_a_mechanism_names_is_there(mechanism: ablation.Mechanism) -> None:
-    make_settings(dict(mechanism.variant.settings))
-    assert set(mechanism.variant.constants) <= {constant.name for constant in tuning_constants()}
-    if mechanism.files or mechanism.named:
-        assert mechanism.lines > 1
+def test_what_a_mechanism_names_is_there(subtests: pytest.Subtests) -> None:
+    for mechanism in [*MECHANISMS, LIMITS, CALIBRATION]:
+        with subtests.test(mechanism=mechanism):
+            make_settings(dict(mechanism.variant.settings))
+            assert set(mechanism.variant.constants) <= {constant.name for constant in tuning_constants()}
+            if mechanism.files or mechanism.named:
+                assert mechanism.lines > 1

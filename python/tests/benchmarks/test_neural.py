@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepar
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.logs import Log
 
-pytest.importorskip("sklearn", reason="neural networks need scikit-learn")
+pytestmark = pytest.mark.skipif(find_spec("sklearn") is None, reason="neural networks need scikit-learn")
 
 add_networks()
 

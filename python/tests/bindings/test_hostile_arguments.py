@@ -20,13 +20,14 @@ EDD_2 = _core.named_basis("edd-2")
 MODEL = _core.MotionModel(EDD_2, False, True)
 
 
-@pytest.mark.parametrize("shape", [(0, 0), (0, 1), (1, 1), (2, 3), (3, 3)])
-def test_a_covariance_of_another_size_is_refused(shape: tuple[int, int]) -> None:
-    with pytest.raises(ValueError, match="the covariance of slip rates needs 2 rows and columns"):
-        _core.slip_rate_covariance(EDD_2, np.zeros(shape), STATE)
-    law = _core.DisturbanceModel([], np.zeros(0))
-    with pytest.raises(ValueError, match="the covariance of a model needs 3 rows and columns"):
-        _core.covariance_over(MODEL, np.zeros((shape[0] + 1, shape[1] + 2)), law, np.ones(3), 1.0)
+def test_a_covariance_of_another_size_is_refused(subtests: pytest.Subtests) -> None:
+    for shape in [(0, 0), (0, 1), (1, 1), (2, 3), (3, 3)]:
+        with subtests.test(shape=shape):
+            with pytest.raises(ValueError, match="the covariance of slip rates needs 2 rows and columns"):
+                _core.slip_rate_covariance(EDD_2, np.zeros(shape), STATE)
+            law = _core.DisturbanceModel([], np.zeros(0))
+            with pytest.raises(ValueError, match="the covariance of a model needs 3 rows and columns"):
+                _core.covariance_over(MODEL, np.zeros((shape[0] + 1, shape[1] + 2)), law, np.ones(3), 1.0)
 
 
 @pytest.mark.parametrize("count", [0, 1, 3, 1000])
@@ -56,19 +57,20 @@ def test_stamps_of_future_inputs_that_do_not_increase_are_refused(stamps: tuple[
         of_type("MotionLearner").predict(future, 1.0, 0.0)
 
 
-@pytest.mark.parametrize("number", range(len(bound_functions())))
-def test_every_binding_works_with_its_sound_arguments(number: int) -> None:
+def test_every_binding_works_with_its_sound_arguments(subtests: pytest.Subtests) -> None:
     """What the test below changes one by one; a new binding may need a line in `sound_arguments`."""
-    bound = bound_functions()[number]
-    given = [sound(bound, *parameter) for parameter in bound.parameters]
-    if bound.title == "Gpu.__init__":
-        pytest.skip("there may be no GPU")
-    if bound.name == "__init__":
-        getattr(_core, bound.owner)(*given)
-    elif bound.owner:
-        getattr(owner_of(bound), bound.name)(*given)
-    else:
-        getattr(_core, bound.name)(*given)
+    for number in range(len(bound_functions())):
+        with subtests.test(number=number):
+            bound = bound_functions()[number]
+            given = [sound(bound, *parameter) for parameter in bound.parameters]
+            if bound.title == "Gpu.__init__":
+                pytest.skip("there may be no GPU")
+            if bound.name == "__init__":
+                getattr(_core, bound.owner)(*given)
+            elif bound.owner:
+                getattr(owner_of(bound), bound.name)(*given)
+            else:
+                getattr(_core, bound.name)(*given)
 
 
 @pytest.mark.slow

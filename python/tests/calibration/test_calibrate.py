@@ -59,15 +59,17 @@ def test_true_parameters_lie_within_three_sigma(basis: str, input_name: str, est
         assert (np.abs(model.mean - truth_of(basis, input_name)) < 3.0 * sigma).all()
 
 
-@pytest.mark.parametrize("basis", TRUTHS)
-def test_recovered_slip_is_also_close(basis: str) -> None:
-    model = recovered(basis, "wheel", 1).model
-    state = _core.SlipState(1.0, 0.4, 0.0, 0.0)
-    size = len(TRUTHS[basis])
-    learned, true = (
-        _core.slip_rate(model.motion.basis, p, state) for p in (model.mean[:size], np.array(TRUTHS[basis]))
-    )
-    assert learned == pytest.approx(true, abs=0.01)
+def test_recovered_slip_is_also_close(subtests: pytest.Subtests) -> None:
+    for basis, parameters in TRUTHS.items():
+        with subtests.test(basis=basis):
+            model = recovered(basis, "wheel", 1).model
+            state = _core.SlipState(1.0, 0.4, 0.0, 0.0)
+            size = len(parameters)
+            learned, true = (
+                _core.slip_rate(model.motion.basis, p, state)
+                for p in (model.mean[:size], np.array(parameters))
+            )
+            assert learned == pytest.approx(true, abs=0.01)
 
 
 @pytest.mark.parametrize("late", [-0.1, 0.0, 0.05, 0.3])

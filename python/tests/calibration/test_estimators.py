@@ -58,14 +58,17 @@ def run_of(name: str, settings: Settings, windows: WindowSet) -> EstimatorRun:
     return run_estimator(settings.model_copy(update={"estimator": name}), "wheel", windows)
 
 
-@pytest.mark.parametrize("name", _core.estimator_names())
-def test_every_estimator_learns_the_slip(name: str, settings: Settings, windows: WindowSet) -> None:
-    run = run_of(name, settings, windows)
-    causal, kept = run.posterior(len(windows)), run.kept()
-    for posterior in (causal, kept):
-        assert posterior.mean == pytest.approx(SLIP, abs=0.01)
-        assert posterior.variance_ratio.shape == (2,)
-    assert run.causal == (name != "batch") == np.array_equal(causal.mean, kept.mean)
+def test_every_estimator_learns_the_slip(
+    settings: Settings, windows: WindowSet, subtests: pytest.Subtests
+) -> None:
+    for name in _core.estimator_names():
+        with subtests.test(name=name):
+            run = run_of(name, settings, windows)
+            causal, kept = run.posterior(len(windows)), run.kept()
+            for posterior in (causal, kept):
+                assert posterior.mean == pytest.approx(SLIP, abs=0.01)
+                assert posterior.variance_ratio.shape == (2,)
+            assert run.causal == (name != "batch") == np.array_equal(causal.mean, kept.mean)
 
 
 def test_what_batch_knew_on_the_way_never_depends_on_what_came_later(
@@ -77,17 +80,18 @@ def test_what_batch_knew_on_the_way_never_depends_on_what_came_later(
     assert np.array_equal(early.mean, other.posterior(20).mean)
 
 
-@pytest.mark.parametrize("name", _core.estimator_names())
-def test_every_estimator_calibrates(name: str) -> None:
-    chosen = make_settings({"basis": "edd-2", "learn_clock_offset": False, "estimator": name})
-    calibration = calibrate(circling_log(), settings=chosen)
-    assert calibration.verdict.good
-    assert calibration.model.mean == pytest.approx(SLIP, abs=0.01)
-    assert calibration.model.content.provenance.settings["estimator"] == name
-    if name == "batch":
-        assert calibration.history is None
-    else:
-        assert calibration.history.mean[-1] == pytest.approx(calibration.model.mean, abs=1e-12)
+def test_every_estimator_calibrates(subtests: pytest.Subtests) -> None:
+    for name in _core.estimator_names():
+        with subtests.test(name=name):
+            chosen = make_settings({"basis": "edd-2", "learn_clock_offset": False, "estimator": name})
+            calibration = calibrate(circling_log(), settings=chosen)
+            assert calibration.verdict.good
+            assert calibration.model.mean == pytest.approx(SLIP, abs=0.01)
+            assert calibration.model.content.provenance.settings["estimator"] == name
+            if name == "batch":
+                assert calibration.history is None
+            else:
+                assert calibration.history.mean[-1] == pytest.approx(calibration.model.mean, abs=1e-12)
 
 
 def test_the_estimator_and_smoothing_are_options_of_the_package() -> None:

@@ -23,12 +23,15 @@ INPUTS = ("wheel", "command")
 ON_A_GRID = Drive(seconds=60.0, lag=0.2, delay=0.1, basis=_core.named_basis("edd-2"), alpha=(-0.05, -0.3))
 
 
-@pytest.mark.parametrize("name", INPUTS)
-@pytest.mark.parametrize("move", MOVES)
-def test_the_hour_and_the_frame_change_nothing(name: str, move: str) -> None:
-    log = simulated_log(ON_A_GRID)
-    found = differences(calibrate(log, input=name), calibrate(moved_log(log, MOVES[move]), input=name))
-    assert list(found) == []
+def test_the_hour_and_the_frame_change_nothing(subtests: pytest.Subtests) -> None:
+    for name in INPUTS:
+        for move in MOVES:
+            with subtests.test(name=name, move=move):
+                log = simulated_log(ON_A_GRID)
+                found = differences(
+                    calibrate(log, input=name), calibrate(moved_log(log, MOVES[move]), input=name)
+                )
+                assert list(found) == []
 
 
 @pytest.mark.parametrize("name", INPUTS)

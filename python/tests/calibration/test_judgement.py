@@ -8,14 +8,11 @@ import math
 import pytest
 from judgements import BETTER, judged
 
-from slipwise.calibration.judgement import Ratio
-
 NAN = (math.nan,) * 3
 
 
-@pytest.mark.parametrize(
-    ("position", "heading", "beats"),
-    [
+def test_the_baseline_is_beaten_only_beyond_chance(subtests: pytest.Subtests) -> None:
+    for position, heading, beats in [
         (BETTER, BETTER, True),
         (BETTER, (1.0, 0.8, 1.2), True),  # heading is as before
         (BETTER, (1.005, 0.8, 1.2), True),  # the same, as it prints
@@ -26,11 +23,10 @@ NAN = (math.nan,) * 3
         ((1.0, 1.0, 1.0), (1.0, 1.0, 1.0), False),
         (NAN, BETTER, True),  # the baseline's position is never wrong, nor is this one's
         (NAN, NAN, False),
-    ],
-)
-def test_the_baseline_is_beaten_only_beyond_chance(position: Ratio, heading: Ratio, beats: bool) -> None:
-    assert judged(position, heading).beats_baseline is beats
-    assert bool(judged(position, heading).fault()) is not beats
+    ]:
+        with subtests.test(position=position, heading=heading, beats=beats):
+            assert judged(position, heading).beats_baseline is beats
+            assert bool(judged(position, heading).fault()) is not beats
 
 
 def test_fewer_than_four_segments_are_too_few() -> None:

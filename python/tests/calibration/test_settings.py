@@ -206,9 +206,10 @@ def load_settings_of_nothing() -> Settings:
     return make_settings({})
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
+def test_wrong_settings_are_refused_with_the_key_and_the_file(
+    tmp_path: Path, subtests: pytest.Subtests
+) -> None:
+    for text, message in [
         ("colour = 1", "colour: there is no such key"),
         ("[filter]\nhubber = 2.0", r"filter\.hubber: there is no such key"),
         ("[filter]\nhuber = nan", r"filter\.huber"),
@@ -229,16 +230,13 @@ def load_settings_of_nothing() -> Settings:
         ("basis = 3", "basis: must be text, not 3"),
         ("basis", r"not a TOML file: .*write lines like basis = \"auto\""),
         ("basis = 'a'\nbasis = 'b'", "not a TOML file"),
-    ],
-)
-def test_wrong_settings_are_refused_with_the_key_and_the_file(
-    tmp_path: Path, text: str, message: str
-) -> None:
-    path = written(tmp_path, text)
-    with pytest.raises(SettingsError, match=message) as caught:
-        load_settings(path)
-    assert caught.value.where == str(path)
-    assert caught.value.advice
+    ]:
+        with subtests.test(text=text, message=message):
+            path = written(tmp_path, text)
+            with pytest.raises(SettingsError, match=message) as caught:
+                load_settings(path)
+            assert caught.value.where == str(path)
+            assert caught.value.advice
 
 
 def test_file_that_is_no_text_or_missing_is_refused(tmp_path: Path) -> None:
@@ -256,11 +254,12 @@ def test_unknown_basis_is_refused_with_the_known_ones() -> None:
         make_settings({"auto": {"bases": ["edd-2", "magic-7"]}}).bases()
 
 
-@pytest.mark.parametrize("term", ["quux", "V*", "V^-1*", "__import__('os')", "V**2", "1", "", "V+w", "V^999"])
-def test_wrong_term_is_refused_with_its_text(term: str) -> None:
-    settings = make_settings({"basis": "custom", "terms": {"lon": [term]}})
-    with pytest.raises(SettingsError, match="term"):
-        settings.bases()
+def test_wrong_term_is_refused_with_its_text(subtests: pytest.Subtests) -> None:
+    for term in ["quux", "V*", "V^-1*", "__import__('os')", "V**2", "1", "", "V+w", "V^999"]:
+        with subtests.test(term=term):
+            settings = make_settings({"basis": "custom", "terms": {"lon": [term]}})
+            with pytest.raises(SettingsError, match="term"):
+                settings.bases()
 
 
 def test_custom_basis_without_terms_is_refused() -> None:

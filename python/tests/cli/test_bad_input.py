@@ -37,10 +37,11 @@ def refusal(slipwise: Slipwise, folder: Path, *arguments: object) -> str:
     return result.line
 
 
-@pytest.mark.parametrize("name", ["drive.csv", "drive.csv.gz", "drive.parquet", "drive.mcap", "drive.bag"])
-def test_an_empty_file_is_refused(slipwise: Slipwise, folder: Path, name: str) -> None:
-    (folder / name).touch()
-    assert refusal(slipwise, folder, "calibrate", name).startswith(f"the file is empty ({name})")
+def test_an_empty_file_is_refused(slipwise: Slipwise, folder: Path, subtests: pytest.Subtests) -> None:
+    for name in ["drive.csv", "drive.csv.gz", "drive.parquet", "drive.mcap", "drive.bag"]:
+        with subtests.test(name=name):
+            (folder / name).touch()
+            assert refusal(slipwise, folder, "calibrate", name).startswith(f"the file is empty ({name})")
 
 
 @pytest.mark.parametrize("name", ["drive.mcap", "drive.db3", "drive.bag", "drive.parquet"])
@@ -202,13 +203,15 @@ HOSTILE_YAML = {
 }
 
 
-@pytest.mark.parametrize("kind", HOSTILE_YAML)
-def test_a_hostile_model_file_is_refused(slipwise: Slipwise, drive_csv: Path, kind: str) -> None:
-    content, expected = HOSTILE_YAML[kind]
-    Path("model.yaml").write_text(content)
-    line = refusal(slipwise, drive_csv.parent, "evaluate", drive_csv, "--model", "model.yaml")
-    assert "model.yaml" in line
-    assert expected in line
+def test_a_hostile_model_file_is_refused(
+    slipwise: Slipwise, drive_csv: Path, subtests: pytest.Subtests
+) -> None:
+    for kind, (content, expected) in HOSTILE_YAML.items():
+        with subtests.test(kind=kind):
+            Path("model.yaml").write_text(content)
+            line = refusal(slipwise, drive_csv.parent, "evaluate", drive_csv, "--model", "model.yaml")
+            assert "model.yaml" in line
+            assert expected in line
 
 
 @pytest.mark.parametrize(
@@ -226,9 +229,10 @@ def test_wrong_settings_are_refused(slipwise: Slipwise, drive_csv: Path, content
     assert expected in line
 
 
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
+def test_wrong_use_is_said_in_one_line(
+    slipwise: Slipwise, drive_csv: Path, subtests: pytest.Subtests
+) -> None:
+    for arguments, expected in [
         (["--bogus"], "No such option: --bogus"),
         (["frobnicate"], "No such command 'frobnicate'"),
         (["calibrate"], "Missing argument 'LOG...'"),
@@ -249,12 +253,9 @@ def test_wrong_settings_are_refused(slipwise: Slipwise, drive_csv: Path, content
         (["simulate", "-o", "drive.csv", "--drive", "wild"], "unknown drive 'wild'"),
         (["simulate", "-o", "drive.csv", "--duration", "-5"], "duration is -5.0"),
         (["demo", "--duration", "nan"], "the demonstration lasts nan s"),
-    ],
-)
-def test_wrong_use_is_said_in_one_line(
-    slipwise: Slipwise, drive_csv: Path, arguments: list[str], expected: str
-) -> None:
-    assert expected in refusal(slipwise, drive_csv.parent, *arguments)
+    ]:
+        with subtests.test(arguments=arguments, expected=expected):
+            assert expected in refusal(slipwise, drive_csv.parent, *arguments)
 
 
 def test_the_process_itself_ends_with_one_line_and_2(process: Slipwise, folder: Path) -> None:

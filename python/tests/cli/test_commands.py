@@ -29,11 +29,12 @@ def dull_csv(folder: Path) -> Path:
     return write_csv(folder / "dull.csv", make_columns(drive))
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_help_has_examples(slipwise: Slipwise, command: str) -> None:
-    result = slipwise(command, "--help")
-    assert (result.code, result.err) == (0, "")
-    assert f"\n    slipwise {command} " in result.out
+def test_help_has_examples(slipwise: Slipwise, subtests: pytest.Subtests) -> None:
+    for command in COMMANDS:
+        with subtests.test(command=command):
+            result = slipwise(command, "--help")
+            assert (result.code, result.err) == (0, "")
+            assert f"\n    slipwise {command} " in result.out
 
 
 def test_no_arguments_show_the_commands(slipwise: Slipwise) -> None:

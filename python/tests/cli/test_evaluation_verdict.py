@@ -14,21 +14,17 @@ from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.models import Model
 
 
-@pytest.mark.parametrize(
-    ("methods", "judged"),
-    [
+def test_first_method_that_learns_a_model_is_judged_after_model_and_auto(subtests: pytest.Subtests) -> None:
+    for methods, judged in [
         (("none", "edd-2", "auto"), "auto"),
         (("none", "auto", "model"), "model"),
         (("none", "vendor", "batch", "icr-3", "ipem-9"), "icr-3"),
         (("none", "slip-ratio-ekf", "slip-ratio-smo", "edd-2"), "edd-2"),
         (("none", "slip-ratio-ekf", "slip-ratio-smo"), None),
         (("none", "vendor", "batch"), None),
-    ],
-)
-def test_first_method_that_learns_a_model_is_judged_after_model_and_auto(
-    methods: tuple[str, ...], judged: str | None
-) -> None:
-    assert judged_method(methods) == judged
+    ]:
+        with subtests.test(methods=methods, judged=judged):
+            assert judged_method(methods) == judged
 
 
 def test_an_evaluation_and_a_calibration_say_the_same_of_the_same_log() -> None:

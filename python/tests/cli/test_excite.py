@@ -42,9 +42,10 @@ def test_model_says_what_is_known_and_the_limits(slipwise: Slipwise, folder: Pat
     assert document["parameters"][0] == "lon.V"
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
+def test_wrong_use_ends_with_code_2_and_says_why(
+    slipwise: Slipwise, folder: Path, subtests: pytest.Subtests
+) -> None:
+    for arguments, message in [
         (("--vehicle", "unicycle"), "husky"),
         ((), "--vehicle"),
         (("--vehicle", "husky", "--area", "8"), "8x8"),
@@ -53,15 +54,12 @@ def test_model_says_what_is_known_and_the_limits(slipwise: Slipwise, folder: Pat
         (("--vehicle", "husky", "--hold", "0.33"), "hold"),
         (("--vehicle", "husky", "--model", "a.yaml", "--prior", "b.yaml"), "--prior"),
         (("--vehicle", "husky", "--prior", "b.yaml"), "b.yaml"),
-    ],
-)
-def test_wrong_use_ends_with_code_2_and_says_why(
-    slipwise: Slipwise, folder: Path, arguments: tuple[str, ...], message: str
-) -> None:
-    result = slipwise("excite", *arguments)
-    assert result.code == 2
-    assert message in result.err
-    assert not list(folder.glob("excite.*"))
+    ]:
+        with subtests.test(arguments=arguments, message=message):
+            result = slipwise("excite", *arguments)
+            assert result.code == 2
+            assert message in result.err
+            assert not list(folder.glob("excite.*"))
 
 
 def test_of_a_model_that_learned_nothing_the_prior_is_what_is_known(folder: Path) -> None:

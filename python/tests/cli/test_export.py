@@ -146,17 +146,20 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("arguments", "message"), REFUSED.values(), ids=REFUSED)
 def test_bad_use_is_one_line_with_exit_code_2_and_leaves_nothing(
-    slipwise: Slipwise, wheel: Path, command: Path, arguments: tuple[str, ...], message: str
+    slipwise: Slipwise, wheel: Path, command: Path, subtests: pytest.Subtests
 ) -> None:
-    Path("other.yaml").write_text(wheel.read_text().replace("slipwise_model: 4", "slipwise_model: 99"))
-    Path("text.yaml").write_text("just words\n")
-    before = left_in(Path())
-    result = slipwise("export", *arguments)
-    assert result.code == 2
-    assert message in result.line
-    assert left_in(Path()) == before
+    for arguments, message in REFUSED.values():
+        with subtests.test(arguments=arguments, message=message):
+            Path("other.yaml").write_text(
+                wheel.read_text().replace("slipwise_model: 4", "slipwise_model: 99")
+            )
+            Path("text.yaml").write_text("just words\n")
+            before = left_in(Path())
+            result = slipwise("export", *arguments)
+            assert result.code == 2
+            assert message in result.line
+            assert left_in(Path()) == before
 
 
 def test_files_that_are_there_are_replaced_whole(slipwise: Slipwise, wheel: Path) -> None:

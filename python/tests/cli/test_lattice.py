@@ -68,20 +68,18 @@ def test_a_bad_verdict_is_refused_unless_forced(slipwise: Slipwise, arguments: l
     assert slipwise(*arguments, "--no-picture", "--force").code == 0
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
+def test_a_lattice_that_cannot_be_is_refused(
+    slipwise: Slipwise, arguments: list[object], subtests: pytest.Subtests
+) -> None:
+    for given, message in [
         (("--headings", "12"), "12 headings"),
         (("--speed", "99"), "lattice options"),
         (("--grid", "0"), "grid is 0"),
         (("--curvature", "-1"), "the limit curvature is -1"),
         (("--longest", "0.5"), "some headings have no primitive"),
-    ],
-)
-def test_a_lattice_that_cannot_be_is_refused(
-    slipwise: Slipwise, arguments: list[object], given: tuple[str, str], message: str
-) -> None:
-    result = slipwise(*arguments, "--no-picture", *given)
-    assert result.code == 2
-    assert message in result.line
-    assert not Path("out/lattice/lattice.json").exists()
+    ]:
+        with subtests.test(given=given, message=message):
+            result = slipwise(*arguments, "--no-picture", *given)
+            assert result.code == 2
+            assert message in result.line
+            assert not Path("out/lattice/lattice.json").exists()

@@ -169,20 +169,16 @@ def test_settings_stand_in_a_file_and_the_command_line_goes_before_it(drive: Pat
     ]
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
+def test_what_cannot_be_is_one_line(capsys: pytest.CaptureFixture[str], subtests: pytest.Subtests) -> None:
+    for options, said in [
         (["--transport", "carrier-pigeon"], "transport"),
         (["--set", "live.apply.mode=always"], "apply"),
         (["--set", "live.node=two words"], "node"),
         (["--set", "live.domain=999"], "domain"),
         (["--replay", "nowhere.csv"], "no such file"),
         (["--transport", "udp", "--set", "live.address=nowhere"], "cannot listen"),
-    ],
-)
-def test_what_cannot_be_is_one_line(
-    options: list[str], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(["live", *options]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert said in line
+    ]:
+        with subtests.test(options=options, said=said):
+            assert run(["live", *options]) == 2
+            (line,) = capsys.readouterr().err.splitlines()
+            assert said in line

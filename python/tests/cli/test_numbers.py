@@ -18,10 +18,15 @@ def test_a_pose_and_a_grade_are_read() -> None:
     assert grade_of(None) is None
 
 
-@pytest.mark.parametrize("text", ["", "8", "8,-90,1", "steep,0", "nan,0"])
-def test_what_is_no_grade_is_refused_with_an_example(text: str) -> None:
-    with pytest.raises(SettingsError, match=r"is no grade \(--grade\): give SLOPE,DOWNHILL, such as 8,-90"):
-        grade_of(text)
+def test_what_is_no_grade_is_refused_with_an_example(subtests: pytest.Subtests) -> None:
+    for text in ["", "8", "8,-90,1", "steep,0", "nan,0"]:
+        with (
+            subtests.test(text=text),
+            pytest.raises(
+                SettingsError, match=r"is no grade \(--grade\): give SLOPE,DOWNHILL, such as 8,-90"
+            ),
+        ):
+            grade_of(text)
 
 
 def test_a_slope_on_which_no_wheel_holds_is_refused() -> None:

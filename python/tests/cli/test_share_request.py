@@ -38,23 +38,21 @@ def test_what_is_not_stated_is_found(slipwise: Slipwise, drive_csv: Path) -> Non
     assert "3 departures" in slipwise("inspect", "s.parquet", "--strict").out
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
+def test_options_that_cannot_be_are_one_line(
+    slipwise: Slipwise, drive_csv: Path, folder: Path, subtests: pytest.Subtests
+) -> None:
+    for options, message in [
         (("-o", "s.csv", "--card"), "a data set to share is Parquet"),
         (("-o", "s.parquet", "--licence", "MIT"), "no card is written"),
         (("-o", "s.parquet", "--keep", "x"), "nothing is left out"),
         (("-o", "s.parquet", "--card", "--robot", " "), "nothing is said"),
         (("-o", "s.parquet", "--anonymise", "--keep", "gyro"), "no column gyro to keep"),
-    ],
-)
-def test_options_that_cannot_be_are_one_line(
-    slipwise: Slipwise, drive_csv: Path, folder: Path, options: tuple[str, ...], message: str
-) -> None:
-    result = slipwise("convert", drive_csv, *options)
-    assert result.code == 2
-    assert result.line.startswith(message)
-    assert left_in(folder) == {"drive.csv"}
+    ]:
+        with subtests.test(options=options, message=message):
+            result = slipwise("convert", drive_csv, *options)
+            assert result.code == 2
+            assert result.line.startswith(message)
+            assert left_in(folder) == {"drive.csv"}
 
 
 def test_a_file_beside_that_is_the_input_is_never_replaced(slipwise: Slipwise, drive_csv: Path) -> None:

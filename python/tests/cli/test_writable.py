@@ -51,13 +51,16 @@ def by_another_way(path: Path) -> Path:
     return Path("sub") / ".." / path.name
 
 
-@pytest.mark.parametrize("name", [Path, Path.absolute, by_symlink, by_hardlink, by_another_way])
-def test_an_output_that_is_an_input_is_refused(folder: Path, name: Callable[[Path], Path]) -> None:
-    source = Path("drive.csv")
-    source.touch()
-    refuse_unwritable(Path("other.csv"), inputs=[source])
-    with pytest.raises(OutputError, match=r"this would replace what is read \(.*\): name another file"):
-        refuse_unwritable(name(source), inputs=[source])
+def test_an_output_that_is_an_input_is_refused(folder: Path, subtests: pytest.Subtests) -> None:
+    for name in [Path, Path.absolute, by_symlink, by_hardlink, by_another_way]:
+        with subtests.test(name=name):
+            source = Path("drive.csv")
+            source.touch()
+            refuse_unwritable(Path("other.csv"), inputs=[source])
+            with pytest.raises(
+                OutputError, match=r"this would replace what is read \(.*\): name another file"
+            ):
+                refuse_unwritable(name(source), inputs=[source])
 
 
 def test_a_file_of_a_bag_folder_is_an_input(folder: Path) -> None:

@@ -68,20 +68,21 @@ def command_lines() -> list[tuple[str, str]]:
     return found
 
 
-@pytest.mark.parametrize(("page", "line"), command_lines())
-def test_a_command_line_is_understood(page: str, line: str) -> None:
-    import typer
-    from typer.core import TyperGroup
+def test_a_command_line_is_understood(subtests: pytest.Subtests) -> None:
+    for page, line in command_lines():
+        with subtests.test(page=page, line=line):
+            import typer
+            from typer.core import TyperGroup
 
-    from slipwise.cli.main import app, with_ports
+            from slipwise.cli.main import app, with_ports
 
-    command: Any = typer.main.get_command(app)
-    words = with_ports(shlex.split(line, comments=True)[1:])
-    while isinstance(command, TyperGroup):  # `slipwise terrain train` is a command of a command
-        assert words[0] in command.commands, f"{page}: no command {words[0]}"
-        command, words = command.commands[words[0]], words[1:]
-    context = command.make_context(command.name, words)
-    assert context.params
+            command: Any = typer.main.get_command(app)
+            words = with_ports(shlex.split(line, comments=True)[1:])
+            while isinstance(command, TyperGroup):  # `slipwise terrain train` is a command of a command
+                assert words[0] in command.commands, f"{page}: no command {words[0]}"
+                command, words = command.commands[words[0]], words[1:]
+            context = command.make_context(command.name, words)
+            assert context.params
 
 
 @pytest.mark.slow

@@ -57,18 +57,19 @@ def test_a_comment_belongs_to_the_declaration_below_it() -> None:
     assert [(comment, head) for comment, head, *_ in found] == [("/// near", "int a;"), ("", "int b;")]
 
 
-@pytest.mark.parametrize("folder", FOLDERS)
-def test_a_page_names_every_header_and_every_type_with_a_comment(folder: str) -> None:
-    text = page(folder)
-    for header in (HEADERS / folder).glob("*.hpp"):
-        assert f"## {header.name}" in text
-        source = header.read_text(encoding="utf-8")
-        for name in re.findall(r"^(?:class|struct) (\w+)(?: final)? \{", source, re.MULTILINE):
-            assert f"### {name}\n" in text, name
-    code = "\n".join(re.findall(r"^```cpp\n(.*?)^```", text, re.DOTALL | re.MULTILINE))
-    bare = re.sub(r"//[^\n]*", "", code)
-    assert bare.count("{") == bare.count("}")
-    assert not re.search(r"\breturn\b|\w_;", bare)
+def test_a_page_names_every_header_and_every_type_with_a_comment(subtests: pytest.Subtests) -> None:
+    for folder in FOLDERS:
+        with subtests.test(folder=folder):
+            text = page(folder)
+            for header in (HEADERS / folder).glob("*.hpp"):
+                assert f"## {header.name}" in text
+                source = header.read_text(encoding="utf-8")
+                for name in re.findall(r"^(?:class|struct) (\w+)(?: final)? \{", source, re.MULTILINE):
+                    assert f"### {name}\n" in text, name
+            code = "\n".join(re.findall(r"^```cpp\n(.*?)^```", text, re.DOTALL | re.MULTILINE))
+            bare = re.sub(r"//[^\n]*", "", code)
+            assert bare.count("{") == bare.count("}")
+            assert not re.search(r"\breturn\b|\w_;", bare)
 
 
 def test_the_learner_is_shown_with_what_it_is_given() -> None:

@@ -20,17 +20,20 @@ def anchors(page: Path) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
-def test_links_of_a_page_resolve(page: Path) -> None:
-    broken = []
-    for link in LINK.findall(prose(page)):
-        if link.startswith(("http://", "https://", "mailto:")):
-            continue
-        path, _, anchor = link.partition("#")
-        target = (page.parent / path).resolve() if path else page
-        if not target.exists() or (anchor and target.suffix == ".md" and anchor not in anchors(target)):
-            broken.append(link)
-    assert not broken
+def test_links_of_a_page_resolve(subtests: pytest.Subtests) -> None:
+    for page in PAGES:
+        with subtests.test(page=page):
+            broken = []
+            for link in LINK.findall(prose(page)):
+                if link.startswith(("http://", "https://", "mailto:")):
+                    continue
+                path, _, anchor = link.partition("#")
+                target = (page.parent / path).resolve() if path else page
+                if not target.exists() or (
+                    anchor and target.suffix == ".md" and anchor not in anchors(target)
+                ):
+                    broken.append(link)
+            assert not broken
 
 
 def test_every_page_is_reached_from_the_readme() -> None:

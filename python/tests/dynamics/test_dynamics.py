@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,9 +18,8 @@ def test_measured_states_are_named_in_their_order() -> None:
     assert CART.measured_names == ("place",)
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
+def test_what_makes_no_sense_is_refused(subtests: pytest.Subtests) -> None:
+    for make, message in [
         (lambda: State("x", measured=0.0), "measured without any error"),
         (lambda: State("x", noise=-1.0), "negative or not finite"),
         (lambda: State("x", start=float("nan")), "x has a number"),
@@ -31,11 +29,9 @@ def test_measured_states_are_named_in_their_order() -> None:
         (lambda: replace(CART, states=(State("a"), State("b"))), "a state that is measured"),
         (lambda: replace(CART, inputs=("place",)), "two of the names are the same"),
         (lambda: replace(CART, longest_step=0.0), "longest step"),
-    ],
-)
-def test_what_makes_no_sense_is_refused(make: Any, message: str) -> None:
-    with pytest.raises(SettingsError, match=message):
-        make()
+    ]:
+        with subtests.test(make=make, message=message), pytest.raises(SettingsError, match=message):
+            make()
 
 
 def test_rates_of_another_number_are_refused() -> None:

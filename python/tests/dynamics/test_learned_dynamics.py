@@ -30,21 +30,19 @@ def test_without_a_state_it_goes_on_from_the_end_of_the_drive(learned: LearnedDy
     assert path.states[0] == pytest.approx(learned.state.mean)
 
 
-@pytest.mark.parametrize(
-    ("inputs", "times", "state", "message"),
-    [
+def test_what_cannot_be_predicted_is_refused(learned: LearnedDynamics, subtests: pytest.Subtests) -> None:
+    for inputs, times, state, message in [
         ([[0.0]], [1.0], None, "the inputs have shape"),
         ([[0.0, 1.0]], [1.0], (0.0,), "a state of shape"),
         ([[0.0, 1.0]], [-1.0], None, "not before the last measurement"),
         ([[0.0, np.nan]], [1.0], None, "not finite"),
         ([[0.5, 1.0]], [1.0], None, "there is no input yet"),
-    ],
-)
-def test_what_cannot_be_predicted_is_refused(
-    learned: LearnedDynamics, inputs: object, times: list[float], state: object, message: str
-) -> None:
-    with pytest.raises(SettingsError, match=message):
-        learned.predict(inputs, times, state=state)  # type: ignore[arg-type]
+    ]:
+        with (
+            subtests.test(inputs=inputs, times=times, state=state, message=message),
+            pytest.raises(SettingsError, match=message),
+        ):
+            learned.predict(inputs, times, state=state)  # type: ignore[arg-type]
 
 
 def test_it_is_shown_as_a_table_with_a_verdict(learned: LearnedDynamics) -> None:

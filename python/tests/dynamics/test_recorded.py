@@ -21,16 +21,16 @@ def test_rows_that_cannot_be_used_are_counted() -> None:
     assert found.left_out == 2 + 3
 
 
-@pytest.mark.parametrize(
-    ("inputs", "measured", "message"),
-    [
+def test_what_is_no_recorded_drive_is_refused(subtests: pytest.Subtests) -> None:
+    for inputs, measured, message in [
         ([[0.0]], [[0.0, 0.0]], r"the inputs have shape \(1, 1\)"),
         ([[0.0, 1.0]], [[0.0, 0.0, 0.0]], r"the measurements have shape \(1, 3\)"),
         ([["a", "b"]], [[0.0, 0.0]], "no table of numbers"),
         ([[0.0, 1.0]], [[0.1 * k, 0.0] for k in range(9)], "9 measurements"),
         ([[5.0, 1.0]], [[0.1 * k, 0.0] for k in range(20)], "0 measurements after the first"),
-    ],
-)
-def test_what_is_no_recorded_drive_is_refused(inputs: object, measured: object, message: str) -> None:
-    with pytest.raises(LogError, match=message):
-        recorded(CART, inputs, measured)  # type: ignore[arg-type]
+    ]:
+        with (
+            subtests.test(inputs=inputs, measured=measured, message=message),
+            pytest.raises(LogError, match=message),
+        ):
+            recorded(CART, inputs, measured)  # type: ignore[arg-type]

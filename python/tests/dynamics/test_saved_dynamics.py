@@ -22,9 +22,8 @@ def test_a_drive_begins_with_what_another_one_learned(tmp_path: Path) -> None:
     assert [p.unit for p in begun.parameters] == [p.unit for p in CART.parameters]
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
+def test_other_files_are_refused(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for text, message in [
         ("slipwise_model: 4\n", "no dynamics file"),
         ("slipwise_dynamics: 1\n", "parameters none"),
         ("slipwise_dynamics: 1\nparameters: [{name: drag, value: 1, std: 1}]\n", "parameters drag"),
@@ -36,13 +35,12 @@ def test_a_drive_begins_with_what_another_one_learned(tmp_path: Path) -> None:
             "slipwise_dynamics: 1\nparameters: [{name: drag, value: 1, std: 0}, {name: gain}]\n",
             "drag has no value",
         ),
-    ],
-)
-def test_other_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
-    path = tmp_path / "cart.yaml"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(ModelError, match=message):
-        load_dynamics(path, CART)
+    ]:
+        with subtests.test(text=text, message=message):
+            path = tmp_path / "cart.yaml"
+            path.write_text(text, encoding="utf-8")
+            with pytest.raises(ModelError, match=message):
+                load_dynamics(path, CART)
 
 
 def test_dynamics_with_other_names_are_refused(tmp_path: Path) -> None:

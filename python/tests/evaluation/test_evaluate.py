@@ -114,9 +114,8 @@ def test_single_estimators_are_methods_by_name(log: Log) -> None:
         assert score.position_ratio[0] < 0.5
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
+def test_wrong_options_are_refused_with_advice(log: Log, subtests: pytest.Subtests) -> None:
+    for options, message in [
         (EvaluationOptions(methods=("none", "magic")), "unknown method 'magic' .*known are none, vendor"),
         (EvaluationOptions(methods=("vendor",)), "needs a multiplier .*--vendor-wheel-separation-multiplier"),
         (EvaluationOptions(methods=("vendor",), vendor_wheel_separation_multiplier=0.0), "must be positive"),
@@ -129,11 +128,9 @@ def test_single_estimators_are_methods_by_name(log: Log) -> None:
         (EvaluationOptions(horizons=(1.0, -2.0)), "horizons must be positive seconds"),
         (EvaluationOptions(horizons=(float("nan"),)), "horizons must be positive seconds"),
         (EvaluationOptions(horizons=(float("inf"),)), "horizons must be positive seconds"),
-    ],
-)
-def test_wrong_options_are_refused_with_advice(log: Log, options: EvaluationOptions, message: str) -> None:
-    with pytest.raises(SettingsError, match=message):
-        evaluate(log, options=options)
+    ]:
+        with subtests.test(options=options, message=message), pytest.raises(SettingsError, match=message):
+            evaluate(log, options=options)
 
 
 def test_horizon_without_windows_gives_a_note(log: Log) -> None:

@@ -77,23 +77,23 @@ WRONG: dict[str, tuple[Callable[[Rows], Rows], str]] = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG)
-def test_a_wrong_file_is_a_clear_error(rows: Rows, targets: WindowSet, tmp_path: Path, name: str) -> None:
-    change, message = WRONG[name]
-    with pytest.raises(LogError, match=message):
-        on_the_log(written(tmp_path / "p.csv", change(rows)), targets)
+def test_a_wrong_file_is_a_clear_error(
+    rows: Rows, targets: WindowSet, tmp_path: Path, subtests: pytest.Subtests
+) -> None:
+    for name, (change, message) in WRONG.items():
+        with subtests.test(name=name), pytest.raises(LogError, match=message):
+            on_the_log(written(tmp_path / "p.csv", change(rows)), targets)
 
 
-@pytest.mark.parametrize(
-    "content", [b"", b"\0\1\2", b"run;method\n1;2\n", b"run,method\n", b"\x1f\x8b\x08", b"\xff\xfe,\n"]
-)
-def test_what_is_no_such_table_is_a_clear_error(tmp_path: Path, content: bytes) -> None:
-    path = tmp_path / "p.csv"
-    path.write_bytes(content)
-    with pytest.raises(LogError):
-        read_predictions(path)
-    with pytest.raises(LogError, match="no such prediction file"):
-        read_predictions(tmp_path)
+def test_what_is_no_such_table_is_a_clear_error(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for content in [b"", b"\0\1\2", b"run;method\n1;2\n", b"run,method\n", b"\x1f\x8b\x08", b"\xff\xfe,\n"]:
+        with subtests.test(content=content):
+            path = tmp_path / "p.csv"
+            path.write_bytes(content)
+            with pytest.raises(LogError):
+                read_predictions(path)
+            with pytest.raises(LogError, match="no such prediction file"):
+                read_predictions(tmp_path)
 
 
 def test_the_first_half_may_be_left_out_and_rows_be_in_any_order(

@@ -30,9 +30,7 @@ def test_slower_space_has_a_fraction_of_the_limits() -> None:
     assert CommandSpace(2.0, 1.0, 3.0).slower(0.25, 0.5) == CommandSpace(0.5, 0.5, 3.0)
 
 
-@pytest.mark.parametrize(
-    "limits", [(0.0, 1.0), (1.0, -1.0), (math.nan, 1.0), (math.inf, 1.0), (1.0, 1.0, 0.0)]
-)
-def test_limit_that_is_none_is_refused(limits: tuple[float, ...]) -> None:
-    with pytest.raises(SettingsError, match="the limit"):
-        CommandSpace(*limits)
+def test_limit_that_is_none_is_refused(subtests: pytest.Subtests) -> None:
+    for limits in [(0.0, 1.0), (1.0, -1.0), (math.nan, 1.0), (math.inf, 1.0), (1.0, 1.0, 0.0)]:
+        with subtests.test(limits=limits), pytest.raises(SettingsError, match="the limit"):
+            CommandSpace(*limits)

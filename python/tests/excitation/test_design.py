@@ -84,17 +84,14 @@ def test_area_without_room_is_refused() -> None:
         design_drive(prior_knowledge(SPACE), SPACE, replace(OPTIONS, area=(1.01, 1.01)))
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
+def test_option_that_makes_no_sense_is_refused(subtests: pytest.Subtests) -> None:
+    for wrong in [
         {"minutes": 0.0},
         {"hold": 0.25},
         {"pause": -0.1},
         {"radius": -1.0},
         {"area": (0.0, 8.0)},
         {"minutes": float("nan")},
-    ],
-)
-def test_option_that_makes_no_sense_is_refused(wrong: dict[str, object]) -> None:
-    with pytest.raises(SettingsError):
-        replace(OPTIONS, **wrong)  # type: ignore[arg-type]
+    ]:
+        with subtests.test(wrong=wrong), pytest.raises(SettingsError):
+            replace(OPTIONS, **wrong)  # type: ignore[arg-type]

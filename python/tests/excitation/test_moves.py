@@ -12,23 +12,23 @@ from slipwise.excitation.moves import ORDERS, Move, command_periods, figure_of, 
 SPACE = CommandSpace(1.0, 1.0)
 
 
-@pytest.mark.parametrize("order", ORDERS)
-def test_every_move_is_answered_by_its_reverse_and_its_mirror_image(
-    order: tuple[tuple[int, int], ...],
-) -> None:
-    moves = figure_of([(0.5, 0.8), (1.0, 0.2)], order, 2.0, 0.5)
-    told = sorted((move.v, move.omega) for move in moves)
-    assert told == sorted((-v, -w) for v, w in told)
-    assert told == sorted((v, -w) for v, w in told)
+def test_every_move_is_answered_by_its_reverse_and_its_mirror_image(subtests: pytest.Subtests) -> None:
+    for order in ORDERS:
+        with subtests.test(order=order):
+            moves = figure_of([(0.5, 0.8), (1.0, 0.2)], order, 2.0, 0.5)
+            told = sorted((move.v, move.omega) for move in moves)
+            assert told == sorted((-v, -w) for v, w in told)
+            assert told == sorted((v, -w) for v, w in told)
 
 
-@pytest.mark.parametrize("order", ORDERS)
-def test_heading_returns_whatever_the_slip_is(order: tuple[tuple[int, int], ...]) -> None:
-    knowledge = prior_knowledge(SPACE, dynamics=False)
-    moves = figure_of([(0.5, 0.8), (1.0, 0.2)], order, 2.0, 0.0)
-    paths = drawn_robots(knowledge, 20, seed=3).paths(command_periods(moves, 0.1))
-    np.testing.assert_allclose(paths[:, 2, -1], 0.0, atol=1e-9)
-    assert np.abs(paths[:, 2]).max() > 1.0
+def test_heading_returns_whatever_the_slip_is(subtests: pytest.Subtests) -> None:
+    for order in ORDERS:
+        with subtests.test(order=order):
+            knowledge = prior_knowledge(SPACE, dynamics=False)
+            moves = figure_of([(0.5, 0.8), (1.0, 0.2)], order, 2.0, 0.0)
+            paths = drawn_robots(knowledge, 20, seed=3).paths(command_periods(moves, 0.1))
+            np.testing.assert_allclose(paths[:, 2, -1], 0.0, atol=1e-9)
+            assert np.abs(paths[:, 2]).max() > 1.0
 
 
 def test_robot_without_slip_ends_where_it_began() -> None:

@@ -165,17 +165,14 @@ def test_what_does_not_fit_is_refused(made: Made, options: ExportOptions | None,
         written(make_model(made), options)
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
+def test_impossible_options_are_refused(subtests: pytest.Subtests) -> None:
+    for wrong in [
         {"horizon": 0.0},
         {"horizon": float("nan")},
         {"wheel_separation": -0.5},
         {"logged_separation_multiplier": float("inf")},
         {"min_turning_radius": 0.0},
         {"update_rate": 0.0},
-    ],
-)
-def test_impossible_options_are_refused(wrong: dict[str, Any]) -> None:
-    with pytest.raises(SettingsError):
-        ExportOptions(**wrong)
+    ]:
+        with subtests.test(wrong=wrong), pytest.raises(SettingsError):
+            ExportOptions(**wrong)

@@ -17,11 +17,14 @@ QUANTITIES = sorted({parameter.quantity for table in (PX4, ARDUPILOT) for parame
 MADE = named("edd-2", ang__w=-0.4)
 
 
-@pytest.mark.parametrize("quantity", QUANTITIES)
-@pytest.mark.parametrize("commands", [True, False])
-def test_every_quantity_is_a_number_or_says_why_not(quantity: str, commands: bool) -> None:
-    found = FirmwareNumbers(make_model(replace(MADE, commands=commands)), ExportOptions()).answer(quantity)
-    assert isinstance(found, Quantity) or len(found) > 10
+def test_every_quantity_is_a_number_or_says_why_not(subtests: pytest.Subtests) -> None:
+    for quantity in QUANTITIES:
+        for commands in [True, False]:
+            with subtests.test(quantity=quantity, commands=commands):
+                found = FirmwareNumbers(make_model(replace(MADE, commands=commands)), ExportOptions()).answer(
+                    quantity
+                )
+                assert isinstance(found, Quantity) or len(found) > 10
 
 
 def test_y_points_to_the_right_in_firmwares() -> None:

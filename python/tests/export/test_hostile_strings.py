@@ -134,12 +134,13 @@ def test_no_string_of_a_model_leaves_the_comments_of_an_export(
         assert code_of(target, again.text) == expected
 
 
-@pytest.mark.parametrize("field", ["name", "unit"])
-@pytest.mark.parametrize("text", HOSTILE)
-def test_names_and_units_are_those_of_the_parameters(field: str, text: str, tmp_path: Path) -> None:
-    content = full(WHEEL)
-    content["parameters"][0][field] = text
-    assert loaded(content, tmp_path / "m.yaml") is None
+def test_names_and_units_are_those_of_the_parameters(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for field in ["name", "unit"]:
+        for text in HOSTILE:
+            with subtests.test(field=field, text=text):
+                content = full(WHEEL)
+                content["parameters"][0][field] = text
+                assert loaded(content, tmp_path / "m.yaml") is None
 
 
 def test_a_wrong_unit_is_said_in_one_line(tmp_path: Path) -> None:
@@ -192,8 +193,9 @@ def page_of() -> Callable[[str], str]:
     return lambda title: plan_page(Plan(route, free, 0.3, start, goal, title))
 
 
-@pytest.mark.parametrize("text", HOSTILE)
 def test_the_names_of_files_do_not_reach_the_markup_of_a_plan(
-    page_of: Callable[[str], str], text: str
+    page_of: Callable[[str], str], subtests: pytest.Subtests
 ) -> None:
-    assert elements(page_of(text)) == elements(page_of("model.yaml on map.yaml"))
+    for text in HOSTILE:
+        with subtests.test(text=text):
+            assert elements(page_of(text)) == elements(page_of("model.yaml on map.yaml"))

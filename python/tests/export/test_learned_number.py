@@ -113,29 +113,30 @@ GIVEN = {
 }
 
 
-@pytest.mark.parametrize(("target", "made", "options"), EVERYTHING)
-def test_of_a_model_that_knows_nothing_no_learned_number_is_written(
-    target: str, made: Made, options: ExportOptions | None
-) -> None:
-    model = changed(made, BADLY, windows=10)
-    if made.limits is not None:
-        dump = model.content.model_dump(mode="json")
-        for axis in ("speed", "yaw_rate", "side"):
-            for limit in filter(None, dump["limits"][axis].values()):
-                limit["std"] = 1.3e7
-        model = Model(ModelFile.model_validate(dump))
-    before = set(exported(make_model(made), target, options).values)
-    file = exported(model, target, options)
-    left = {name for name in set(file.values) - GIVEN if "velocity" not in name and name not in MEASURED}
-    if target == "robot-localization":  # all fifteen stay at the filter's own
-        assert "x and y too: learned" in file.text
-        left -= {"process_noise_covariance"}
-    assert left == set()
-    assert set(file.kept) >= before - set(file.values) - {"process_noise_covariance"} - CONTROL
-    for name, why in file.kept.items():
-        assert f"# {name} is left at the tool's own value:\n" in file.text
-        assert why[:40] in file.text
-    assert yaml.safe_load(file.text)
+def test_of_a_model_that_knows_nothing_no_learned_number_is_written(subtests: pytest.Subtests) -> None:
+    for target, made, options in EVERYTHING:
+        with subtests.test(target=target, made=made, options=options):
+            model = changed(made, BADLY, windows=10)
+            if made.limits is not None:
+                dump = model.content.model_dump(mode="json")
+                for axis in ("speed", "yaw_rate", "side"):
+                    for limit in filter(None, dump["limits"][axis].values()):
+                        limit["std"] = 1.3e7
+                model = Model(ModelFile.model_validate(dump))
+            before = set(exported(make_model(made), target, options).values)
+            file = exported(model, target, options)
+            left = {
+                name for name in set(file.values) - GIVEN if "velocity" not in name and name not in MEASURED
+            }
+            if target == "robot-localization":  # all fifteen stay at the filter's own
+                assert "x and y too: learned" in file.text
+                left -= {"process_noise_covariance"}
+            assert left == set()
+            assert set(file.kept) >= before - set(file.values) - {"process_noise_covariance"} - CONTROL
+            for name, why in file.kept.items():
+                assert f"# {name} is left at the tool's own value:\n" in file.text
+                assert why[:40] in file.text
+            assert yaml.safe_load(file.text)
 
 
 #: What the poses show, however little was learned.

@@ -14,9 +14,8 @@ def test_the_defaults_and_the_bounds_themselves_are_taken() -> None:
     assert ExportOptions(horizon=1000.0, wheel_separation=0.001).horizon == 1000.0
 
 
-@pytest.mark.parametrize(
-    ("name", "advice"),
-    [
+def test_a_number_out_of_bounds_is_refused_with_its_option(subtests: pytest.Subtests) -> None:
+    for name, advice in [
         ("horizon", "give 0.01 to 1000 s"),
         ("wheel_separation", "give 0.001 to 100 m"),
         ("logged_separation_multiplier", "give 0.01 to 100"),
@@ -24,11 +23,10 @@ def test_the_defaults_and_the_bounds_themselves_are_taken() -> None:
         ("min_turning_radius", "give 0.001 to 10000 m"),
         ("update_rate", "give 0.1 to 100000 Hz"),
         ("planning_horizon", "give 0.01 to 1000 s"),
-    ],
-)
-@pytest.mark.parametrize("value", [0.0, -1.0, 1e300, math.nan, math.inf])
-def test_a_number_out_of_bounds_is_refused_with_its_option(name: str, advice: str, value: float) -> None:
-    with pytest.raises(SettingsError) as caught:
-        ExportOptions(**{name: value})
-    assert f"--{name.replace('_', '-')}" in str(caught.value)
-    assert str(caught.value).rstrip(".").endswith(advice)
+    ]:
+        for value in [0.0, -1.0, 1e300, math.nan, math.inf]:
+            with subtests.test(name=name, advice=advice, value=value):
+                with pytest.raises(SettingsError) as caught:
+                    ExportOptions(**{name: value})
+                assert f"--{name.replace('_', '-')}" in str(caught.value)
+                assert str(caught.value).rstrip(".").endswith(advice)

@@ -11,12 +11,13 @@ from slipwise.export.origin import one_line, origin_lines
 HOSTILE = "a */ b\n#define X ??/\x00\r\u2028/* c"
 
 
-@pytest.mark.parametrize("text", [HOSTILE, "**//", "/**/*/", "???/", "?" * 9])
-def test_nothing_ends_a_comment_or_a_line(text: str) -> None:
-    said = one_line(text)
-    assert not any(mark in said for mark in ("*/", "/*", "??"))
-    assert len(said.splitlines()) == 1
-    assert said.isprintable()
+def test_nothing_ends_a_comment_or_a_line(subtests: pytest.Subtests) -> None:
+    for text in [HOSTILE, "**//", "/**/*/", "???/", "?" * 9]:
+        with subtests.test(text=text):
+            said = one_line(text)
+            assert not any(mark in said for mark in ("*/", "/*", "??"))
+            assert len(said.splitlines()) == 1
+            assert said.isprintable()
 
 
 def test_plain_words_stay_and_long_ones_are_cut() -> None:

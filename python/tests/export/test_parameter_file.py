@@ -19,9 +19,10 @@ def test_a_float_is_read_back_as_a_float(value: float) -> None:
     assert again == pytest.approx(value, rel=1e-5)
 
 
-@pytest.mark.parametrize("value", [True, False, "mppi::DiffDriveMotionModel", [True, False], [1.0, -2.5e-8]])
-def test_a_value_is_read_back(value: Value) -> None:
-    assert yaml.safe_load(yaml_value(value)) == value
+def test_a_value_is_read_back(subtests: pytest.Subtests) -> None:
+    for value in [True, False, "mppi::DiffDriveMotionModel", [True, False], [1.0, -2.5e-8]]:
+        with subtests.test(value=value):
+            assert yaml.safe_load(yaml_value(value)) == value
 
 
 @given(st.text())

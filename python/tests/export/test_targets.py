@@ -43,68 +43,75 @@ def fitting(target: Target) -> Made:
     return FITTING[target.name]
 
 
-@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
-def test_a_file_names_the_log_the_versions_and_the_verdict(target: Target) -> None:
-    made = replace(
-        fitting(target), log="drives/monday.mcap", sentence="It misses by 3 cm.", identifiable=False
-    )
-    head = export_model(make_model(made), target.name, name="mine.yaml", options=VERSIONS).text[:1200]
-    for words in (
-        f"slipwise {version('slipwise')}, model mine.yaml",
-        "learned by slipwise 0.2.0",
-        "drives/monday.mcap (sha256 abababababababab)",
-        "verdict: good. It misses by 3 cm.",
-        "speeds -0.5 to 1.5 m/s",
-        "not identifiable from the log",
-        "ang.w",
-    ):
-        assert words in head
+def test_a_file_names_the_log_the_versions_and_the_verdict(subtests: pytest.Subtests) -> None:
+    for target in TARGETS:
+        with subtests.test(target=target):
+            made = replace(
+                fitting(target), log="drives/monday.mcap", sentence="It misses by 3 cm.", identifiable=False
+            )
+            head = export_model(make_model(made), target.name, name="mine.yaml", options=VERSIONS).text[:1200]
+            for words in (
+                f"slipwise {version('slipwise')}, model mine.yaml",
+                "learned by slipwise 0.2.0",
+                "drives/monday.mcap (sha256 abababababababab)",
+                "verdict: good. It misses by 3 cm.",
+                "speeds -0.5 to 1.5 m/s",
+                "not identifiable from the log",
+                "ang.w",
+            ):
+                assert words in head
 
 
-@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
-def test_a_bad_verdict_is_refused_unless_forced(target: Target) -> None:
-    model = make_model(replace(fitting(target), good=False, sentence="It does not beat doing nothing."))
-    with pytest.raises(ModelError, match="verdict is bad: It does not beat doing nothing") as caught:
-        export_model(model, target.name, name="m.yaml", options=VERSIONS)
-    assert "--force" in caught.value.advice
-    text = export_model(model, target.name, name="m.yaml", options=VERSIONS, force=True).text
-    assert "verdict: NOT GOOD ENOUGH. It does not beat doing nothing." in text
+def test_a_bad_verdict_is_refused_unless_forced(subtests: pytest.Subtests) -> None:
+    for target in TARGETS:
+        with subtests.test(target=target):
+            model = make_model(
+                replace(fitting(target), good=False, sentence="It does not beat doing nothing.")
+            )
+            with pytest.raises(ModelError, match="verdict is bad: It does not beat doing nothing") as caught:
+                export_model(model, target.name, name="m.yaml", options=VERSIONS)
+            assert "--force" in caught.value.advice
+            text = export_model(model, target.name, name="m.yaml", options=VERSIONS, force=True).text
+            assert "verdict: NOT GOOD ENOUGH. It does not beat doing nothing." in text
 
 
 FROM_COMMANDS = ("mppi", "robot-localization", "px4", "ardupilot", "c-header")
 
 
-@pytest.mark.parametrize("target", FROM_COMMANDS)
-def test_a_model_without_an_actuator_model_is_exported(target: str) -> None:
-    model = make_model(replace(named("edd-2", ang__w=-0.3), delays=(0.1, 0.0)))
-    assert "learned by slipwise" in export_model(model, target, name="m.yaml", options=VERSIONS).text
+def test_a_model_without_an_actuator_model_is_exported(subtests: pytest.Subtests) -> None:
+    for target in FROM_COMMANDS:
+        with subtests.test(target=target):
+            model = make_model(replace(named("edd-2", ang__w=-0.3), delays=(0.1, 0.0)))
+            assert "learned by slipwise" in export_model(model, target, name="m.yaml", options=VERSIONS).text
 
 
-@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
-def test_the_kinematic_baseline_is_exported(target: Target) -> None:
-    model = make_model(Made(_core.Basis("none", [], [], [])))
-    name = "command" if target.name in FROM_COMMANDS else "wheel"
-    baseline = Model(model.content.model_copy(update={"input": name}))
-    assert baseline.motion.size == 0
-    made = export_model(baseline, target.name, name="m.yaml", options=VERSIONS)
-    assert "learned by slipwise" in made.text
+def test_the_kinematic_baseline_is_exported(subtests: pytest.Subtests) -> None:
+    for target in TARGETS:
+        with subtests.test(target=target):
+            model = make_model(Made(_core.Basis("none", [], [], [])))
+            name = "command" if target.name in FROM_COMMANDS else "wheel"
+            baseline = Model(model.content.model_copy(update={"input": name}))
+            assert baseline.motion.size == 0
+            made = export_model(baseline, target.name, name="m.yaml", options=VERSIONS)
+            assert "learned by slipwise" in made.text
 
 
 HOSTILE = "evil */ int x; /* \n#define V 2\n??/\nnode: {a: 1} \u2028 end"
 
 
-@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
-def test_text_of_a_model_file_cannot_leave_the_comment(target: Target) -> None:
-    made = fitting(target)
-    plain, hostile = (
-        export_model(make_model(each), target.name, name="m.yaml", options=VERSIONS).text
-        for each in (made, replace(made, log=HOSTILE, sentence=HOSTILE))
-    )
-    if target.name == "c-header":
-        assert hostile.split("*/", 1)[1] == plain.split("*/", 1)[1]
-        assert "??" not in hostile.split("*/", 1)[0]
-    else:
-        assert content(target, hostile) == content(target, plain)
+def test_text_of_a_model_file_cannot_leave_the_comment(subtests: pytest.Subtests) -> None:
+    for target in TARGETS:
+        with subtests.test(target=target):
+            made = fitting(target)
+            plain, hostile = (
+                export_model(make_model(each), target.name, name="m.yaml", options=VERSIONS).text
+                for each in (made, replace(made, log=HOSTILE, sentence=HOSTILE))
+            )
+            if target.name == "c-header":
+                assert hostile.split("*/", 1)[1] == plain.split("*/", 1)[1]
+                assert "??" not in hostile.split("*/", 1)[0]
+            else:
+                assert content(target, hostile) == content(target, plain)
 
 
 def test_the_same_model_gives_the_same_bytes() -> None:
@@ -117,17 +124,21 @@ def test_an_unknown_target_is_refused() -> None:
         export_model(make_model(FITTING["amcl"]), "spot", name="m.yaml")
 
 
-@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
-def test_a_model_that_learned_where_its_pose_sensor_sits_is_exported_like_others(target: Target) -> None:
-    made = fitting(target)
-    options = replace(VERSIONS, wheel_separation=0.5, limits=True)
-    mounted = make_model(replace(made, sensor_extrinsics=(0.2, 0.0, 0.1)))
-    one, other = (
-        export_model(model, target.name, name="m", options=options) for model in (mounted, make_model(made))
-    )
-    if target.name != "c-header":
-        assert one.values == other.values
-        assert one.kept == other.kept
+def test_a_model_that_learned_where_its_pose_sensor_sits_is_exported_like_others(
+    subtests: pytest.Subtests,
+) -> None:
+    for target in TARGETS:
+        with subtests.test(target=target):
+            made = fitting(target)
+            options = replace(VERSIONS, wheel_separation=0.5, limits=True)
+            mounted = make_model(replace(made, sensor_extrinsics=(0.2, 0.0, 0.1)))
+            one, other = (
+                export_model(model, target.name, name="m", options=options)
+                for model in (mounted, make_model(made))
+            )
+            if target.name != "c-header":
+                assert one.values == other.values
+                assert one.kept == other.kept
 
 
 def test_wheels_whose_sensor_was_learned_are_exported_to_autopilots() -> None:

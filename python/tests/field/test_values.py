@@ -59,25 +59,27 @@ def rows_of(path: Path) -> list[list[str]]:
     return [line.split() for line in path.read_text().splitlines() if not line.startswith("#")]
 
 
-@pytest.mark.parametrize(
-    ("head", "separator"),
-    [
+def test_cells_may_be_separated_otherwise_and_names_stand_in_a_comment(
+    slipwise: Slipwise, field_log: FieldLog, folder: Path, subtests: pytest.Subtests
+) -> None:
+    for head, separator in [
         ("# t,odo_v,odo_omega\n", ","),  # as numpy.savetxt writes it
         ("t\todo_v\todo_omega\n", "\t"),
         ("t;odo_v;odo_omega\n", " ; "),
         ("\n# of the morning\n\nt odo_v odo_omega\n# not the names\n", "   "),
         ("# t odo_v odo_omega\n\n", " "),
-    ],
-)
-def test_cells_may_be_separated_otherwise_and_names_stand_in_a_comment(
-    slipwise: Slipwise, field_log: FieldLog, folder: Path, head: str, separator: str
-) -> None:
-    rows = [separator.join(row) for row in rows_of(field_log("odometry.dat"))]
-    rows.insert(100, "# a remark between rows")
-    (folder / "drive.txt").write_text(head + "\n".join(rows) + "\n")
-    result = slipwise("convert", "drive.txt", "--poses", field_log("truth_tum.txt"), "-o", "drive.csv")
-    assert result.code == 0, result
-    assert len((folder / "drive.csv").read_text().splitlines()) == len(rows)  # a header, and no remark
+    ]:
+        with subtests.test(head=head, separator=separator):
+            rows = [separator.join(row) for row in rows_of(field_log("odometry.dat"))]
+            rows.insert(100, "# a remark between rows")
+            (folder / "drive.txt").write_text(head + "\n".join(rows) + "\n")
+            result = slipwise(
+                "convert", "drive.txt", "--poses", field_log("truth_tum.txt"), "-o", "drive.csv"
+            )
+            assert result.code == 0, result
+            assert len((folder / "drive.csv").read_text().splitlines()) == len(
+                rows
+            )  # a header, and no remark
 
 
 def test_columns_by_number_are_there_once(slipwise: Slipwise, field_log: FieldLog) -> None:
@@ -223,9 +225,8 @@ def test_a_drive_that_follows_late_is_no_course_over_ground() -> None:
 # Speeds in other units
 
 
-@pytest.mark.parametrize(
-    ("factors", "expected"),
-    [
+def test_rates_in_another_unit_are_named_with_their_factor(subtests: pytest.Subtests) -> None:
+    for factors, expected in [
         (
             (300.0, 300.0),
             ("0.0031 times as far", "rad/min of wheels of 0.19 m", "--wheel-scale F,F", "about 0.0031"),
@@ -234,16 +235,13 @@ def test_a_drive_that_follows_late_is_no_course_over_ground() -> None:
         ((1.0, 9.549), ("it is not in rad/s", "in rev/min (times 0.1047)", "--wheel-scale 1,0.1047")),
         ((1.0, 57.296), ("looks like degrees per second", "--wheel-scale 1,0.01745", "1,0.01667")),
         ((1.0, 1000.0), ("it is not in rad/s", "in mrad/s (times 0.001)")),
-    ],
-)
-def test_rates_in_another_unit_are_named_with_their_factor(
-    factors: tuple[float, float], expected: tuple[str, ...]
-) -> None:
-    with pytest.raises(LogError) as caught:
-        checked(in_other_units(sound_log((-0.5, 0.8)), factors))
-    for words in expected:
-        assert words in str(caught.value)
-    assert ("degrees" in str(caught.value)) == (factors[1] == 57.296)
+    ]:
+        with subtests.test(factors=factors, expected=expected):
+            with pytest.raises(LogError) as caught:
+                checked(in_other_units(sound_log((-0.5, 0.8)), factors))
+            for words in expected:
+                assert words in str(caught.value)
+            assert ("degrees" in str(caught.value)) == (factors[1] == 57.296)
 
 
 def in_other_units(log: Log, factors: tuple[float, float]) -> Log:

@@ -37,10 +37,10 @@ def test_it_is_read_back_equal() -> None:
     assert back.structures["cascaded"].robot is None
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"input": 1, "kept": 2, "structures": 3}'])
-def test_what_is_no_such_text_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match=r"."):
-        knowledge_from(text)
+def test_what_is_no_such_text_is_refused(subtests: pytest.Subtests) -> None:
+    for text in ["", "{", "[]", "{}", '{"input": 1, "kept": 2, "structures": 3}']:
+        with subtests.test(text=text), pytest.raises(ValueError, match=r"."):
+            knowledge_from(text)
 
 
 def test_a_store_keeps_it_by_vehicle_and_passes_damaged_files(tmp_path) -> None:  # type: ignore[no-untyped-def]

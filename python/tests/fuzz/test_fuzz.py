@@ -16,20 +16,21 @@ from targets import NEVER_REFUSED, Target
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.mark.parametrize("name", TARGETS)
-def test_the_seeds_are_read_and_their_changes_are_read_or_refused(name: str) -> None:
-    target, corpus, draw = Target(name), seeds(name), random.Random(3)
-    for seed in corpus:
-        assert target.run(seed) == ""
-    changed = [mutated(draw.choice(corpus), draw, corpus) for _ in range(15)]
-    refused = sum(bool(target.run(data)) for data in changed)
-    while (
-        not refused and name not in NEVER_REFUSED and len(changed) < 60
-    ):  # what comes by radio is read in spite of most damage
-        changed.append(mutated(draw.choice(corpus), draw, corpus))
-        refused += bool(target.run(changed[-1]))
-    assert refused or name in NEVER_REFUSED
-    assert sum(data not in corpus for data in changed) > 10
+def test_the_seeds_are_read_and_their_changes_are_read_or_refused(subtests: pytest.Subtests) -> None:
+    for name in TARGETS:
+        with subtests.test(name=name):
+            target, corpus, draw = Target(name), seeds(name), random.Random(3)
+            for seed in corpus:
+                assert target.run(seed) == ""
+            changed = [mutated(draw.choice(corpus), draw, corpus) for _ in range(15)]
+            refused = sum(bool(target.run(data)) for data in changed)
+            while (
+                not refused and name not in NEVER_REFUSED and len(changed) < 60
+            ):  # what comes by radio is read in spite of most damage
+                changed.append(mutated(draw.choice(corpus), draw, corpus))
+                refused += bool(target.run(changed[-1]))
+            assert refused or name in NEVER_REFUSED
+            assert sum(data not in corpus for data in changed) > 10
 
 
 def test_the_same_seed_gives_the_same_changes() -> None:

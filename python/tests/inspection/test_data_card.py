@@ -47,9 +47,10 @@ def test_a_card_is_read_back_equal(card: DataCard, tmp_path: Path) -> None:
     assert read_card(tmp_path / "a.card.yaml") == card
 
 
-@pytest.mark.parametrize("damage", ["card: 2\n", "licence: [1]\n", "{", "a: &x 1\nb: *x\n", "\0", ""])
-def test_what_is_no_card_is_a_clear_error(tmp_path: Path, damage: str) -> None:
-    path = tmp_path / "a.card.yaml"
-    path.write_text(damage)
-    with pytest.raises(LogError, match=r"a\.card\.yaml"):
-        read_card(path)
+def test_what_is_no_card_is_a_clear_error(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for damage in ["card: 2\n", "licence: [1]\n", "{", "a: &x 1\nb: *x\n", "\0", ""]:
+        with subtests.test(damage=damage):
+            path = tmp_path / "a.card.yaml"
+            path.write_text(damage)
+            with pytest.raises(LogError, match=r"a\.card\.yaml"):
+                read_card(path)

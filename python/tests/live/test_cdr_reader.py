@@ -74,37 +74,38 @@ def taken(kind: str, message: Any) -> tuple[Any, ...]:
     return (*values, *stamped)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("little_endian", [True, False])
-def test_the_same_is_taken_out_of_a_message_as_from_one_decoded_in_full(
-    kind: str, little_endian: bool
-) -> None:
-    random.seed(4)
-    read = reader_of(kind, STORE)
-    for frame in FRAMES:
-        message = made(kind, lambda: random.gauss(0.0, 1e3), frame)
-        payload = bytes(STORE.serialize_cdr(message, kind, little_endian=little_endian))
-        assert taken(kind, read(payload)) == taken(kind, STORE.deserialize_cdr(payload, kind))
-        assert taken(kind, read(payload)) == taken(kind, message)
+def test_the_same_is_taken_out_of_a_message_as_from_one_decoded_in_full(subtests: pytest.Subtests) -> None:
+    for kind in KINDS:
+        for little_endian in [True, False]:
+            with subtests.test(kind=kind, little_endian=little_endian):
+                random.seed(4)
+                read = reader_of(kind, STORE)
+                for frame in FRAMES:
+                    message = made(kind, lambda: random.gauss(0.0, 1e3), frame)
+                    payload = bytes(STORE.serialize_cdr(message, kind, little_endian=little_endian))
+                    assert taken(kind, read(payload)) == taken(kind, STORE.deserialize_cdr(payload, kind))
+                    assert taken(kind, read(payload)) == taken(kind, message)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_numbers_that_are_none_are_read_as_such(kind: str) -> None:
-    payload = bytes(STORE.serialize_cdr(made(kind, lambda: math.nan, "map"), kind))
-    values, *_ = taken(kind, reader_of(kind, STORE)(payload))
-    assert all(map(math.isnan, values))
+def test_numbers_that_are_none_are_read_as_such(subtests: pytest.Subtests) -> None:
+    for kind in KINDS:
+        with subtests.test(kind=kind):
+            payload = bytes(STORE.serialize_cdr(made(kind, lambda: math.nan, "map"), kind))
+            values, *_ = taken(kind, reader_of(kind, STORE)(payload))
+            assert all(map(math.isnan, values))
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_bytes_that_end_early_or_lie_about_a_length_are_refused(kind: str) -> None:
-    read = reader_of(kind, STORE)
-    payload = bytes(STORE.serialize_cdr(made(kind, lambda: 1.0, "map"), kind))
-    for length in (0, 1, 4, 9, 20, len(payload) // 2, len(payload) - 1):
-        with pytest.raises(Exception):  # noqa: B017, PT011 (whichever: the transport says it and goes on)
-            read(payload[:length])
-    if kind != TWIST:
-        with pytest.raises(Exception):  # noqa: B017, PT011
-            read(payload[:12] + b"\xff\xff\xff\xff" + payload[16:])
+def test_bytes_that_end_early_or_lie_about_a_length_are_refused(subtests: pytest.Subtests) -> None:
+    for kind in KINDS:
+        with subtests.test(kind=kind):
+            read = reader_of(kind, STORE)
+            payload = bytes(STORE.serialize_cdr(made(kind, lambda: 1.0, "map"), kind))
+            for length in (0, 1, 4, 9, 20, len(payload) // 2, len(payload) - 1):
+                with pytest.raises(Exception):  # noqa: B017, PT011 (whichever: the transport says it and goes on)
+                    read(payload[:length])
+            if kind != TWIST:
+                with pytest.raises(Exception):  # noqa: B017, PT011
+                    read(payload[:12] + b"\xff\xff\xff\xff" + payload[16:])
 
 
 def test_other_types_are_decoded_in_full() -> None:

@@ -30,18 +30,23 @@ def handed(model: Any, times: int = 31, **rules: Any) -> tuple[list[AppliedParam
     return told, [note.text for note in said.take_new()]
 
 
-@pytest.mark.parametrize("distro", DISTROS)
-def test_no_node_is_told_a_limit_or_what_it_takes_at_a_restart_alone(distro: str, tmp_path: Path) -> None:
-    for model in (WHEEL, COMMAND):
-        told, _ = handed(model, 2, targets=list(TABLES), ros_distro=distro, folder=str(tmp_path))
-        for each in told:
-            rows = TABLES[each.target].of_distro(distro if TABLES[each.target].differs else None)
-            assert each.values
-            assert all(rows[name].effect == "at once" and not rows[name].limit for name in each.values)
-        for file in tmp_path.glob("*.yaml"):
-            if file.name != "model.yaml":
-                assert "velocity" not in str(yaml.safe_load(file.read_text()))
-                assert "wz_max" not in str(yaml.safe_load(file.read_text()))
+def test_no_node_is_told_a_limit_or_what_it_takes_at_a_restart_alone(
+    tmp_path: Path, subtests: pytest.Subtests
+) -> None:
+    for distro in DISTROS:
+        with subtests.test(distro=distro):
+            for model in (WHEEL, COMMAND):
+                told, _ = handed(model, 2, targets=list(TABLES), ros_distro=distro, folder=str(tmp_path))
+                for each in told:
+                    rows = TABLES[each.target].of_distro(distro if TABLES[each.target].differs else None)
+                    assert each.values
+                    assert all(
+                        rows[name].effect == "at once" and not rows[name].limit for name in each.values
+                    )
+                for file in tmp_path.glob("*.yaml"):
+                    if file.name != "model.yaml":
+                        assert "velocity" not in str(yaml.safe_load(file.read_text()))
+                        assert "wz_max" not in str(yaml.safe_load(file.read_text()))
 
 
 def test_what_wants_a_restart_is_said_once_with_its_file(tmp_path: Path) -> None:

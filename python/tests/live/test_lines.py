@@ -42,19 +42,16 @@ def test_a_json_line_needs_no_header_and_may_ask() -> None:
     assert json.loads(asked.content) == {"horizon": 1, "commands": [[0, 1, 0]]}
 
 
-@pytest.mark.parametrize(
-    ("line", "said"),
-    [
+def test_what_is_no_line_says_why(subtests: pytest.Subtests) -> None:
+    for line, said in [
         ("1.0,2.0", "before a header"),
         ('{"t": "noon", "x": 1, "y": 2, "yaw": 3}', "'noon', not a number"),
         ('{"t": 1', "not a JSON object"),
         ('{"odo_v": 1, "odo_omega": 2}', "no t"),
         ("x" * 20_000, "too long"),
-    ],
-)
-def test_what_is_no_line_says_why(line: str, said: str) -> None:
-    with pytest.raises(LogError, match=said):
-        LineReader().read(line)
+    ]:
+        with subtests.test(line=line, said=said), pytest.raises(LogError, match=said):
+            LineReader().read(line)
 
 
 def test_a_line_of_another_length_than_its_header_says_so() -> None:

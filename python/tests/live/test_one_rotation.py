@@ -32,10 +32,16 @@ def test_what_is_no_rotation_is_none(q: tuple[float, float, float, float]) -> No
     assert not unit_quaternions(np.array([q]))[1][0]
 
 
-@pytest.mark.parametrize(
-    "variances",
-    [(0.04,), (0.04, 0.09), (0.0, 0.1), (-1.0,), (math.nan, 1.0), (math.inf,), (1e-300, 3e-300)],
-)
-def test_a_deviation_is_the_one_of_many(variances: tuple[float, ...]) -> None:
-    wanted = float(deviation_of(np.array([variances]))[0])
-    assert deviation(*variances) == (wanted if math.isfinite(wanted) else None)
+def test_a_deviation_is_the_one_of_many(subtests: pytest.Subtests) -> None:
+    for variances in [
+        (0.04,),
+        (0.04, 0.09),
+        (0.0, 0.1),
+        (-1.0,),
+        (math.nan, 1.0),
+        (math.inf,),
+        (1e-300, 3e-300),
+    ]:
+        with subtests.test(variances=variances):
+            wanted = float(deviation_of(np.array([variances]))[0])
+            assert deviation(*variances) == (wanted if math.isfinite(wanted) else None)

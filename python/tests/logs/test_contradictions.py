@@ -57,13 +57,13 @@ CONTRADICTORY: dict[str, tuple[Log, str, str, str]] = {  # log, input, kind, wha
 }
 
 
-@pytest.mark.parametrize("name", CONTRADICTORY)
-def test_each_contradiction_is_named_with_what_cures_it(name: str) -> None:
-    log, input_name, kind, cure = CONTRADICTORY[name]
-    found = contradictions(log, input_name)
-    assert [each.kind for each in found] == [kind]
-    assert found[0].spoils
-    assert cure in " ".join(found[0].advice)
+def test_each_contradiction_is_named_with_what_cures_it(subtests: pytest.Subtests) -> None:
+    for name, (log, input_name, kind, cure) in CONTRADICTORY.items():
+        with subtests.test(name=name):
+            found = contradictions(log, input_name)
+            assert [each.kind for each in found] == [kind]
+            assert found[0].spoils
+            assert cure in " ".join(found[0].advice)
 
 
 def test_a_stopped_robot_is_said_in_these_words() -> None:
@@ -78,9 +78,8 @@ def test_a_flipped_sign_is_told_from_a_turned_frame_by_the_other_input() -> None
     assert "--pose-yaw-offset" in contradictions(both, "command")[0].advice[0]
 
 
-@pytest.mark.parametrize(
-    "drive",
-    [
+def test_slip_lag_and_noise_are_no_contradiction(subtests: pytest.Subtests) -> None:
+    for drive in [
         SKID_STEERED,
         replace(SKID_STEERED, lag=1.5, delay=0.4),  # sluggish
         replace(SKID_STEERED, alpha=(-0.5, -0.85)),  # on ice
@@ -89,11 +88,10 @@ def test_a_flipped_sign_is_told_from_a_turned_frame_by_the_other_input() -> None
         Drive(seconds=60.0, speeds=(0.0, 0.0)),  # turns on the spot
         Drive(seconds=60.0, speeds=(1.0, 1.0), yaw_rates=(0.0, 0.0)),  # straight on
         Drive(seconds=60.0, basis=_core.named_basis("edd-2"), alpha=(0.0, -0.02), pose_std=(0.001, 0.0005)),
-    ],
-)
-@pytest.mark.parametrize("input_name", ["command", "wheel"])
-def test_slip_lag_and_noise_are_no_contradiction(drive: Drive, input_name: str) -> None:
-    assert contradictions(sound_log(drive), input_name) == ()
+    ]:
+        for input_name in ["command", "wheel"]:
+            with subtests.test(drive=drive, input_name=input_name):
+                assert contradictions(sound_log(drive), input_name) == ()
 
 
 def test_a_short_stop_is_said_but_spoils_nothing() -> None:

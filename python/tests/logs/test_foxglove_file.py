@@ -105,29 +105,27 @@ def test_a_message_that_lacks_a_field_is_left_out_and_counted(tmp_path: Path) ->
     assert "/pose that cannot be decoded as foxglove.PoseInFrame" in entry.reason
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
+def test_a_message_that_holds_something_else_than_numbers_is_left_out_whole(
+    tmp_path: Path, subtests: pytest.Subtests
+) -> None:
+    for wrong in [
         {"orientation": {"x": 0.0, "y": 0.0, "z": 0.0}},
         {"position": {"x": "far", "y": 0.0, "z": 0.0}},
         {"position": {"x": None, "y": 0.0, "z": 0.0}},
         {"position": {"x": 10**400, "y": 0.0, "z": 0.0}},
         {"position": [1.0, 2.0, 3.0]},
-    ],
-)
-def test_a_message_that_holds_something_else_than_numbers_is_left_out_whole(
-    tmp_path: Path, wrong: dict[str, Any]
-) -> None:
-    made = Writer()
-    poses, commands = made.channel("/pose", "foxglove.PoseInFrame"), made.channel("/cmd", TWIST)
-    for k in range(20):
-        made.add(commands, k, STILL)
-        pose = pose_of(k) | (wrong if k == 3 else {})
-        made.add(poses, k, {"timestamp": stamp(k, ("sec", "nsec")), "frame_id": "map", "pose": pose})
-    log = open_log(made.write(tmp_path / "drive.mcap"))
-    assert len(log.runs[0].poses) == 19
-    (entry,) = log.left_out
-    assert (entry.kind, entry.count) == ("bad-message", 1)
+    ]:
+        with subtests.test(wrong=wrong):
+            made = Writer()
+            poses, commands = made.channel("/pose", "foxglove.PoseInFrame"), made.channel("/cmd", TWIST)
+            for k in range(20):
+                made.add(commands, k, STILL)
+                pose = pose_of(k) | (wrong if k == 3 else {})
+                made.add(poses, k, {"timestamp": stamp(k, ("sec", "nsec")), "frame_id": "map", "pose": pose})
+            log = open_log(made.write(tmp_path / "drive.mcap"))
+            assert len(log.runs[0].poses) == 19
+            (entry,) = log.left_out
+            assert (entry.kind, entry.count) == ("bad-message", 1)
 
 
 def test_transforms_whose_frames_have_no_names_are_left_out(tmp_path: Path) -> None:

@@ -11,9 +11,8 @@ import pytest
 from slipwise.logs.foxglove_messages import as_ros, from_json, ros_type
 
 
-@pytest.mark.parametrize(
-    ("schema", "expected"),
-    [
+def test_schemas_stand_for_ros_types(subtests: pytest.Subtests) -> None:
+    for schema, expected in [
         ("foxglove.PoseInFrame", "geometry_msgs/msg/PoseStamped"),
         ("foxglove.FrameTransform", "tf2_msgs/msg/TFMessage"),
         ("nav_msgs/Odometry", "nav_msgs/msg/Odometry"),
@@ -22,10 +21,9 @@ from slipwise.logs.foxglove_messages import as_ros, from_json, ros_type
         ("foxglove.CompressedImage", "foxglove.CompressedImage"),
         ("mine", "mine"),
         ("", ""),
-    ],
-)
-def test_schemas_stand_for_ros_types(schema: str, expected: str) -> None:
-    assert ros_type(schema) == expected
+    ]:
+        with subtests.test(schema=schema, expected=expected):
+            assert ros_type(schema) == expected
 
 
 def test_a_fix_has_position_covariance_and_stamp() -> None:

@@ -63,22 +63,20 @@ def test_poses_of_a_camera_are_turned_to_those_of_the_robot(tmp_path: Path) -> N
     assert "guess: the poses drive along their z axis" in found.notes[1]
 
 
-@pytest.mark.parametrize(
-    ("content", "times", "message"),
-    [
+def test_what_does_not_belong_together_is_refused(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for content, times, message in [
         (lines(*circle()[:2]), stamps(39), r"39 times for 40 poses .*times\.txt"),
         (lines(*circle()[:2])[:-30], stamps(), r"not 12 numbers \(00\.txt, line 40\)"),
         (lines(*circle()[:2]), stamps(39) + "soon\n", r"not 1 number \(times\.txt, line 40\)"),
         ("1 0 0 0 0 1 0 0 0 0 1 0\n" + 12 * "1e200 " + "\n", "0\n1\n", r"no rotation \(00\.txt, pose 2\)"),
         ("1 0 0 0 0 1 0 0 0 0 -1 0\n", "0\n", "no rotation"),
         ("1 0 0 0 0 1 0 0 0 0 1 1e999\n", "0\n", "not 12 numbers"),
-    ],
-)
-def test_what_does_not_belong_together_is_refused(
-    tmp_path: Path, content: str, times: str, message: str
-) -> None:
-    with pytest.raises(LogError, match=message):
-        read_pose_file(write(tmp_path, content, times), {}, Tally())
+    ]:
+        with (
+            subtests.test(content=content, times=times, message=message),
+            pytest.raises(LogError, match=message),
+        ):
+            read_pose_file(write(tmp_path, content, times), {}, Tally())
 
 
 def test_huge_places_are_kept_for_the_cleaning_that_counts_them(tmp_path: Path) -> None:

@@ -67,10 +67,11 @@ def test_runs_are_joined_and_those_of_one_pose_have_no_window() -> None:
     assert len(windows_of()) == 0
 
 
-@pytest.mark.parametrize("angle", [-9.0, -3.2, 0.0, 3.0, 3.2, 100.0])
-def test_a_wrapped_angle_is_the_same_direction_within_half_a_turn(angle: float) -> None:
-    short = wrapped(np.array([angle]))[0]
-    assert -np.pi <= short < np.pi
-    assert np.cos(short) == pytest.approx(np.cos(angle))
-    assert np.sin(short) == pytest.approx(np.sin(angle), abs=1e-12)
-    assert wrapped(np.array([370.0]), 360.0)[0] == pytest.approx(10.0)
+def test_a_wrapped_angle_is_the_same_direction_within_half_a_turn(subtests: pytest.Subtests) -> None:
+    for angle in [-9.0, -3.2, 0.0, 3.0, 3.2, 100.0]:
+        with subtests.test(angle=angle):
+            short = wrapped(np.array([angle]))[0]
+            assert -np.pi <= short < np.pi
+            assert np.cos(short) == pytest.approx(np.cos(angle))
+            assert np.sin(short) == pytest.approx(np.sin(angle), abs=1e-12)
+            assert wrapped(np.array([370.0]), 360.0)[0] == pytest.approx(10.0)

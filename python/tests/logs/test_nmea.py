@@ -93,9 +93,8 @@ def test_wrong_checksums_cut_sentences_and_fixes_that_were_not_measured_are_coun
     }
 
 
-@pytest.mark.parametrize(
-    "body",
-    [
+def test_impossible_fields_are_counted(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for body in [
         "GPGGA,999999.00,4800.0,N,00900.0,E,4,12,0.6,300.0,M,48.0,M,,",
         "GPGGA,-10000.00,4800.0,N,00900.0,E,4,12,0.6,300.0,M,48.0,M,,",
         "GPGGA,120001.00,9999.0,N,00900.0,E,4,12,0.6,300.0,M,48.0,M,,",
@@ -105,13 +104,12 @@ def test_wrong_checksums_cut_sentences_and_fixes_that_were_not_measured_are_coun
         "GPGGA,120001.00,4800.0,N,00900.0,E,99999999999999999999,12,0.6,300.0,M,48.0,M,,",
         "GPGGA,120001.00",
         "GPGGA,",
-    ],
-)
-def test_impossible_fields_are_counted(tmp_path: Path, body: str) -> None:
-    tally = Tally()
-    content = rmc("120000.00") + gga("120000.00") + sentence(body)
-    assert len(read(tmp_path, content, tally).stream.t) == 1
-    assert [(entry.kind, entry.count) for entry in tally.result()] == [("poor-fix", 1)]
+    ]:
+        with subtests.test(body=body):
+            tally = Tally()
+            content = rmc("120000.00") + gga("120000.00") + sentence(body)
+            assert len(read(tmp_path, content, tally).stream.t) == 1
+            assert [(entry.kind, entry.count) for entry in tally.result()] == [("poor-fix", 1)]
 
 
 def test_dates_that_jump_cost_no_more_than_their_lines(tmp_path: Path) -> None:

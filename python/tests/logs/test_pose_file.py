@@ -24,23 +24,21 @@ def read(
     return read_pose_file(path, columns or {}, tally or Tally())
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
+def test_tum_and_tables_say_the_same(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for content in [
         TUM,
         "# timestamp tx ty tz qx qy qz qw\n" + TUM,
         TUM.replace(" ", ","),
         TUM.replace("0.5 1", "5.000000000000e-01   1.0"),
         "timestamp,tx,ty,tz,qx,qy,qz,qw\n" + TUM.replace(" ", ","),
         "t,x,y,yaw\n0.5,1,2,1\n0.6,1.1,2,1\n",
-    ],
-)
-def test_tum_and_tables_say_the_same(tmp_path: Path, content: str) -> None:
-    stream = read(tmp_path / "a.txt", content).stream
-    np.testing.assert_allclose(stream.t, [0.5, 0.6])
-    np.testing.assert_allclose(stream.columns["x"], [1.0, 1.1])
-    np.testing.assert_allclose(stream.columns["y"], [2.0, 2.0])
-    np.testing.assert_allclose(stream.columns["yaw"], [1.0, 1.0], atol=1e-6)
+    ]:
+        with subtests.test(content=content):
+            stream = read(tmp_path / "a.txt", content).stream
+            np.testing.assert_allclose(stream.t, [0.5, 0.6])
+            np.testing.assert_allclose(stream.columns["x"], [1.0, 1.1])
+            np.testing.assert_allclose(stream.columns["y"], [2.0, 2.0])
+            np.testing.assert_allclose(stream.columns["yaw"], [1.0, 1.0], atol=1e-6)
 
 
 def test_a_parquet_table_and_names_of_its_own_are_read(tmp_path: Path) -> None:
@@ -70,9 +68,8 @@ def test_broken_lines_and_bad_quaternions_are_counted_with_their_line(tmp_path: 
     assert left_out == {"broken-row": (2, "a.txt, line 3"), "bad-quaternion": (1, "a.txt, line 5")}
 
 
-@pytest.mark.parametrize(
-    ("content", "message"),
-    [
+def test_other_files_are_refused_with_what_would_do(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for content, message in [
         (
             "1 0 0 0 0 1 0 0 0 0 1 0\n",
             "poses of the KITTI format have no times.*put times.txt or a_times.txt.*_tum.txt",
@@ -82,11 +79,9 @@ def test_broken_lines_and_bad_quaternions_are_counted_with_their_line(tmp_path: 
         ("t,x,y,yaw\n", "holds no poses"),
         ("0 1 2 3 0 0 0 0\n", "holds no poses"),
         ("1 0 0 0 0 1 0 0 0 0 1\n", "11 numbers in a line are no pose"),
-    ],
-)
-def test_other_files_are_refused_with_what_would_do(tmp_path: Path, content: str, message: str) -> None:
-    with pytest.raises(LogError, match=message):
-        read(tmp_path / "a.txt", content)
+    ]:
+        with subtests.test(content=content, message=message), pytest.raises(LogError, match=message):
+            read(tmp_path / "a.txt", content)
 
 
 def test_stamps_that_are_no_numbers_are_no_reason_to_stumble(tmp_path: Path) -> None:

@@ -67,12 +67,12 @@ FAULTS: dict[str, tuple[Callable[[Log], Log], str]] = {
 }
 
 
-@pytest.mark.parametrize("fault", FAULTS)
-def test_contradictions_are_refused_with_advice(log: Log, fault: str) -> None:
-    spoil, expected = FAULTS[fault]
-    with pytest.raises(LogError, match=expected) as caught:
-        checked(spoil(log))
-    assert caught.value.advice
+def test_contradictions_are_refused_with_advice(log: Log, subtests: pytest.Subtests) -> None:
+    for fault, (spoil, expected) in FAULTS.items():
+        with subtests.test(fault=fault):
+            with pytest.raises(LogError, match=expected) as caught:
+                checked(spoil(log))
+            assert caught.value.advice
 
 
 def with_offset(run: Run, start: int, stop: int, offset: float) -> Log:

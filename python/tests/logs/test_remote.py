@@ -131,9 +131,8 @@ def test_a_store_whose_package_is_missing_is_named(monkeypatch: pytest.MonkeyPat
         staged("s3://bucket/none.csv")
 
 
-@pytest.mark.parametrize(
-    ("path", "url"),
-    [
+def test_an_address_is_told_from_a_file(subtests: pytest.Subtests) -> None:
+    for path, url in [
         ("https:/host/a.csv", "https://host/a.csv"),
         ("s3://bucket/a.csv", "s3://bucket/a.csv"),
         ("file:///etc/passwd", None),
@@ -141,11 +140,10 @@ def test_a_store_whose_package_is_missing_is_named(monkeypatch: pytest.MonkeyPat
         ("runs/https:/host", None),
         ("/https://host", None),
         ("https:", None),
-    ],
-)
-def test_an_address_is_told_from_a_file(path: str, url: str | None) -> None:
-    assert remote_url(path) == url
-    assert remote_url(Path(path)) == url
+    ]:
+        with subtests.test(path=path, url=url):
+            assert remote_url(path) == url
+            assert remote_url(Path(path)) == url
 
 
 def test_a_folder_of_this_machine_goes_before_an_address(

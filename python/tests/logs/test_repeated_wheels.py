@@ -40,13 +40,14 @@ def odometry(rate: float, *, at_end: bool, euler: bool) -> list[tuple[Inputs, Po
     return [(Inputs(t=t, v=v, vy=np.zeros_like(t), omega=omega), poses_of(t, np.column_stack((x, y, yaw))))]
 
 
-@pytest.mark.parametrize("rate", [20.0, 50.0])
-@pytest.mark.parametrize("at_end", [False, True])
-@pytest.mark.parametrize("euler", [False, True])
-def test_odometry_is_found_however_it_integrates(rate: float, at_end: bool, euler: bool) -> None:
-    found = found_in(odometry(rate, at_end=at_end, euler=euler))
-    assert found is not None
-    assert "carry no information of their own" in found.sentence
+def test_odometry_is_found_however_it_integrates(subtests: pytest.Subtests) -> None:
+    for rate in [20.0, 50.0]:
+        for at_end in [False, True]:
+            for euler in [False, True]:
+                with subtests.test(rate=rate, at_end=at_end, euler=euler):
+                    found = found_in(odometry(rate, at_end=at_end, euler=euler))
+                    assert found is not None
+                    assert "carry no information of their own" in found.sentence
 
 
 def test_odometry_on_a_clock_of_its_own_is_found() -> None:

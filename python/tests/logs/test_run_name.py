@@ -8,9 +8,8 @@ import pytest
 from slipwise.logs.run_name import run_name
 
 
-@pytest.mark.parametrize(
-    ("path", "name"),
-    [
+def test_a_run_is_named_by_its_file_without_the_endings_of_logs(subtests: pytest.Subtests) -> None:
+    for path, name in [
         ("drives/monday.csv", "monday"),
         ("drives/monday.csv.gz", "monday"),
         ("monday.2.parquet", "monday.2"),
@@ -19,7 +18,6 @@ from slipwise.logs.run_name import run_name
         ("monday.txt", "monday.txt"),
         (".csv", "run"),
         ("/", "run"),
-    ],
-)
-def test_a_run_is_named_by_its_file_without_the_endings_of_logs(path: str, name: str) -> None:
-    assert run_name(Path(path)) == name
+    ]:
+        with subtests.test(path=path, name=name):
+            assert run_name(Path(path)) == name

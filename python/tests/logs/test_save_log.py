@@ -142,12 +142,13 @@ def test_ctrl_c_leaves_the_old_file_and_no_half_one(
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
 
 
-@pytest.mark.parametrize("name", ["warthog/grass.csv.gz", "drive_test/husky.csv.gz", "f1tenth/DS5.csv.gz"])
-@pytest.mark.parametrize("ending", [".csv", ".parquet"])
-def test_real_logs_read_back_equal(real_log_dir: Path, tmp_path: Path, name: str, ending: str) -> None:
-    log = open_log(real_log_dir / name)
-    save_log(log, tmp_path / f"copy{ending}")
-    assert_equal(log, open_log(tmp_path / f"copy{ending}"))
+def test_real_logs_read_back_equal(real_log_dir: Path, tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for name in ["warthog/grass.csv.gz", "drive_test/husky.csv.gz", "f1tenth/DS5.csv.gz"]:
+        for ending in [".csv", ".parquet"]:
+            with subtests.test(name=name, ending=ending):
+                log = open_log(real_log_dir / name)
+                save_log(log, tmp_path / f"copy{ending}")
+                assert_equal(log, open_log(tmp_path / f"copy{ending}"))
 
 
 def test_stamps_that_a_bag_cannot_hold_are_refused(run: Run, tmp_path: Path) -> None:

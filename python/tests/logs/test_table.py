@@ -68,11 +68,10 @@ WRONG_COLUMNS: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
-@pytest.mark.parametrize("kind", WRONG_COLUMNS)
-def test_a_column_of_another_kind_is_named(tmp_path: Path, kind: str) -> None:
-    changed, expected = WRONG_COLUMNS[kind]
-    with pytest.raises(LogError, match=expected):
-        open_log(parquet(tmp_path / "a.parquet", **changed))
+def test_a_column_of_another_kind_is_named(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for kind, (changed, expected) in WRONG_COLUMNS.items():
+        with subtests.test(kind=kind), pytest.raises(LogError, match=expected):
+            open_log(parquet(tmp_path / "a.parquet", **changed))
 
 
 def test_a_column_that_is_carried_along_but_cannot_be_read_is_noted(tmp_path: Path) -> None:

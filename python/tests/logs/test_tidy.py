@@ -159,23 +159,21 @@ def test_missing_columns_are_named_with_those_found(tmp_path: Path) -> None:
     assert "\n" not in message
 
 
-@pytest.mark.parametrize(
-    ("content", "expected"),
-    [
+def test_hopeless_files_are_refused_in_one_line(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for content, expected in [
         (b"", "the file is empty"),
         (b"t;x;y\n0,5;1;2\n", "not separated by commas"),
         (b"\x00\x01\x02\x03binary", "not a text file"),
         (HEADER.encode() + b"\n", "no rows"),
         (b"t,t,x,y,yaw,cmd_v,cmd_omega\n0,0,0,0,0,0,0\n", "column t is there twice"),
         (HEADER.encode() + b"\n0,fast,0,0,0,0,1\n", "column cmd_v: .*must be a number"),
-    ],
-)
-def test_hopeless_files_are_refused_in_one_line(tmp_path: Path, content: bytes, expected: str) -> None:
-    path = tmp_path / "a.csv"
-    path.write_bytes(content)
-    with pytest.raises(LogError, match=expected) as caught:
-        open_log(path)
-    assert "\n" not in str(caught.value)
+    ]:
+        with subtests.test(content=content, expected=expected):
+            path = tmp_path / "a.csv"
+            path.write_bytes(content)
+            with pytest.raises(LogError, match=expected) as caught:
+                open_log(path)
+            assert "\n" not in str(caught.value)
 
 
 def test_a_cut_off_gzip_file_is_refused(tmp_path: Path) -> None:

@@ -19,9 +19,10 @@ def written(folder: Path, text: str) -> str:
     return str(path)
 
 
-@pytest.mark.parametrize("name", vehicle_names())
-def test_every_preset_loads_and_names_its_source(name: str) -> None:
-    assert len(load_vehicle(name).source) > 10
+def test_every_preset_loads_and_names_its_source(subtests: pytest.Subtests) -> None:
+    for name in vehicle_names():
+        with subtests.test(name=name):
+            assert len(load_vehicle(name).source) > 10
 
 
 def test_sizes_of_a_preset_are_taken_where_none_are_given() -> None:
@@ -42,12 +43,16 @@ def test_a_robotino_that_drives_ahead_turns_its_side_wheels_against_each_other()
     assert speed[0, 1] == pytest.approx(0.0, abs=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("vehicle", "sideways"),
-    [("pr2", True), ("ranger-mini", True), ("robotino", True), ("osr-rover", False), ("husky", False)],
-)
-def test_a_vehicle_whose_wheels_are_all_steered_drives_sideways(vehicle: str, sideways: bool) -> None:
-    assert LogOptions(vehicle=vehicle).sideways == sideways
+def test_a_vehicle_whose_wheels_are_all_steered_drives_sideways(subtests: pytest.Subtests) -> None:
+    for vehicle, sideways in [
+        ("pr2", True),
+        ("ranger-mini", True),
+        ("robotino", True),
+        ("osr-rover", False),
+        ("husky", False),
+    ]:
+        with subtests.test(vehicle=vehicle, sideways=sideways):
+            assert LogOptions(vehicle=vehicle).sideways == sideways
 
 
 def test_a_file_describes_wheels_of_a_kind_of_their_own(tmp_path: Path) -> None:
@@ -63,9 +68,8 @@ def test_a_file_describes_wheels_of_a_kind_of_their_own(tmp_path: Path) -> None:
     assert [wheel.behind_hinge for wheel in found.wheels] == [False, False, True]
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
+def test_a_description_that_makes_no_sense_is_refused(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for text, said in [
         ("robot: {}\n", "no section vehicle"),
         ("vehicle: {}\n", "none of them"),
         ("vehicle: {wheelbase: 1.0, tracks: {radius: 1, separation: 1}}\n", "tracks and wheelbase"),
@@ -80,11 +84,9 @@ def test_a_file_describes_wheels_of_a_kind_of_their_own(tmp_path: Path) -> None:
             "same name",
         ),
         ("vehicle: {wheels: [{name: a, x: 0, y: 0, radius: 0.1, colour: red}]}\n", "no such key"),
-    ],
-)
-def test_a_description_that_makes_no_sense_is_refused(tmp_path: Path, text: str, said: str) -> None:
-    with pytest.raises(SettingsError, match=said):
-        load_vehicle(written(tmp_path, text))
+    ]:
+        with subtests.test(text=text, said=said), pytest.raises(SettingsError, match=said):
+            load_vehicle(written(tmp_path, text))
 
 
 def test_an_unknown_name_is_answered_with_those_that_are_known() -> None:

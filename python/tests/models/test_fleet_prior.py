@@ -61,16 +61,16 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG)
-def test_what_is_wrong_is_named(tmp_path: Path, name: str) -> None:
-    keys, value, message = WRONG[name]
-    wrong = content()
-    inside = wrong
-    for key in keys[:-1]:
-        inside = inside[key]
-    inside[keys[-1]] = value
-    with pytest.raises(ModelError, match=message):
-        load_prior(written(tmp_path / "f.yaml", wrong))
+def test_what_is_wrong_is_named(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for name, (keys, value, message) in WRONG.items():
+        with subtests.test(name=name):
+            wrong = content()
+            inside = wrong
+            for key in keys[:-1]:
+                inside = inside[key]
+            inside[keys[-1]] = value
+            with pytest.raises(ModelError, match=message):
+                load_prior(written(tmp_path / "f.yaml", wrong))
 
 
 def test_a_model_file_is_no_prior(tmp_path: Path) -> None:

@@ -202,12 +202,14 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("name", WRONG)
-def test_wrong_file_is_refused_with_the_key_named(content: Content, tmp_path: Path, name: str) -> None:
-    change, message = WRONG[name]
-    wrong = copy.deepcopy(content)
-    change(wrong)
-    refused(wrong, tmp_path / "m.yaml", message)
+def test_wrong_file_is_refused_with_the_key_named(
+    content: Content, tmp_path: Path, subtests: pytest.Subtests
+) -> None:
+    for name, (change, message) in WRONG.items():
+        with subtests.test(name=name):
+            wrong = copy.deepcopy(content)
+            change(wrong)
+            refused(wrong, tmp_path / "m.yaml", message)
 
 
 def test_covariance_with_a_negative_direction_is_refused(content: Content, tmp_path: Path) -> None:

@@ -38,16 +38,16 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("name", HOSTILE)
-def test_hostile_text_is_refused_with_its_file(tmp_path: Path, name: str) -> None:
-    text, message = HOSTILE[name]
-    path = tmp_path / "m.yaml"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(ModelError, match=message) as caught:
-        read_yaml(path)
-    assert caught.value.where.startswith(str(path))
-    assert caught.value.advice
-    assert len(str(caught.value)) < 1000
+def test_hostile_text_is_refused_with_its_file(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for name, (text, message) in HOSTILE.items():
+        with subtests.test(name=name):
+            path = tmp_path / "m.yaml"
+            path.write_text(text, encoding="utf-8")
+            with pytest.raises(ModelError, match=message) as caught:
+                read_yaml(path)
+            assert caught.value.where.startswith(str(path))
+            assert caught.value.advice
+            assert len(str(caught.value)) < 1000
 
 
 def test_line_of_the_fault_is_named(tmp_path: Path) -> None:

@@ -15,10 +15,10 @@ def test_the_core_reads_a_map_once() -> None:
     assert map_.in_core is map_.in_core
 
 
-@pytest.mark.parametrize("cells", [[], [[]], [1.0, 2.0], 3.0, np.zeros((2, 2, 2))])
-def test_cells_that_are_no_rows_and_columns_are_refused(cells: object) -> None:
-    with pytest.raises(SettingsError, match="give rows and columns"):
-        _ = Costmap(cells, 0.5).in_core  # type: ignore[arg-type]
+def test_cells_that_are_no_rows_and_columns_are_refused(subtests: pytest.Subtests) -> None:
+    for cells in [[], [[]], [1.0, 2.0], 3.0, np.zeros((2, 2, 2))]:
+        with subtests.test(cells=cells), pytest.raises(SettingsError, match="give rows and columns"):
+            _ = Costmap(cells, 0.5).in_core  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("resolution", [0.0, -0.1, math.nan, math.inf])

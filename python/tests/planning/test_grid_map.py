@@ -70,9 +70,8 @@ def test_beyond_the_map_nothing_is_free() -> None:
     assert edge <= 0.25
 
 
-@pytest.mark.parametrize(
-    ("changed", "message"),
-    [
+def test_a_map_that_makes_no_sense_is_refused(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for changed, message in [
         ({"resolution": "-0.1"}, "resolution of -0.1 m makes no sense"),
         ({"resolution": "500.0"}, "resolution of 500.0 m makes no sense"),
         ({"resolution": ".nan"}, "resolution of nan m makes no sense"),
@@ -87,13 +86,12 @@ def test_beyond_the_map_nothing_is_free() -> None:
         ({"origin": "[.nan, 0.0, 0.0]"}, "origin is no place on earth"),
         ({"origin": "[0.0]"}, "`origin` is no list"),
         ({"origin": "[0.0, 0.0, 0.5]"}, "`origin` is rotated"),
-    ],
-)
-def test_a_map_that_makes_no_sense_is_refused(tmp_path: Path, changed: dict[str, str], message: str) -> None:
-    with pytest.raises(PlanningError, match=message) as caught:
-        load_map(written(tmp_path, **changed))
-    assert str(tmp_path) in caught.value.where or caught.value.where == "/dev/zero"
-    assert caught.value.advice
+    ]:
+        with subtests.test(changed=changed, message=message):
+            with pytest.raises(PlanningError, match=message) as caught:
+                load_map(written(tmp_path, **changed))
+            assert str(tmp_path) in caught.value.where or caught.value.where == "/dev/zero"
+            assert caught.value.advice
 
 
 def test_a_cut_off_image_is_refused(tmp_path: Path) -> None:
@@ -104,9 +102,8 @@ def test_a_cut_off_image_is_refused(tmp_path: Path) -> None:
         load_map(path)
 
 
-@pytest.mark.parametrize(
-    ("image", "message"),
-    [
+def test_an_image_that_makes_no_sense_is_refused(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for image, message in [
         (b"P5\n100000 100000\n255\n", "has 100000 x 100000 pixels, more than 25000000"),
         (b"P5\n2 2\n100\n\x00\x10\x20\xff", "has a pixel of 255, where white is 100"),
         (b"P2\n2 2\n255\n0 1 2 many\n", "holds what is no number"),
@@ -114,12 +111,11 @@ def test_a_cut_off_image_is_refused(tmp_path: Path) -> None:
         (b"P2\n2 2\n255\n0 1 2 nan\n", "holds what is no"),
         (b"P2\n2 2\n255\n0 1 2 1e99\n", "holds what is no grey level"),
         (b"P5\n0 2\n255\n", "claims 0 x 2 pixels"),
-    ],
-)
-def test_an_image_that_makes_no_sense_is_refused(tmp_path: Path, image: bytes, message: str) -> None:
-    (tmp_path / "a.pgm").write_bytes(image)
-    with pytest.raises(PlanningError, match=message):
-        read_pgm(tmp_path / "a.pgm")
+    ]:
+        with subtests.test(image=image, message=message):
+            (tmp_path / "a.pgm").write_bytes(image)
+            with pytest.raises(PlanningError, match=message):
+                read_pgm(tmp_path / "a.pgm")
 
 
 def test_how_many_cells_are_read_is_a_setting(tmp_path: Path) -> None:

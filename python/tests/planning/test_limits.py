@@ -15,12 +15,13 @@ def made(**changes: object) -> Made:
     return replace(named("edd-2"), **changes)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("name", ["speed", "yaw_rate", "curvature", "acceleration"])
-@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
-def test_a_limit_that_is_no_positive_number_is_refused_by_name(name: str, value: float) -> None:
-    given = {"speed": 1.0, "yaw_rate": 1.0, "curvature": 1.0, "acceleration": 1.0, name: value}
-    with pytest.raises(SettingsError, match=f"the limit {name} is"):
-        Limits(**given)
+def test_a_limit_that_is_no_positive_number_is_refused_by_name(subtests: pytest.Subtests) -> None:
+    for name in ["speed", "yaw_rate", "curvature", "acceleration"]:
+        for value in [0.0, -1.0, math.nan, math.inf]:
+            with subtests.test(name=name, value=value):
+                given = {"speed": 1.0, "yaw_rate": 1.0, "curvature": 1.0, "acceleration": 1.0, name: value}
+                with pytest.raises(SettingsError, match=f"the limit {name} is"):
+                    Limits(**given)
 
 
 def test_limits_are_the_fastest_that_was_driven_either_way() -> None:

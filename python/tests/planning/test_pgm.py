@@ -36,9 +36,8 @@ def test_plain_and_binary_of_one_or_two_bytes_with_comments_are_read(tmp_path: P
     assert (levels.tolist(), white) == ([[250, 1000]], 1000)
 
 
-@pytest.mark.parametrize(
-    ("data", "said"),
-    [
+def test_an_image_that_is_wrong_is_refused_by_name(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for data, said in [
         (b"", "is no PGM image"),
         (b"P6\n2 1\n255\n123456", "is no PGM image"),
         (b"P5\n0 1\n255\n", "claims 0 x 1 pixels"),
@@ -48,15 +47,14 @@ def test_plain_and_binary_of_one_or_two_bytes_with_comments_are_read(tmp_path: P
         (b"P2\n2 1\n255\n1 x", "holds what is no number"),
         (b"P2\n2 1\n255\n1 -1", "holds what is no grey level"),
         (b"P5\n99999 99999\n255\n", "more than"),
-    ],
-)
-def test_an_image_that_is_wrong_is_refused_by_name(tmp_path: Path, data: bytes, said: str) -> None:
-    path = saved(tmp_path, data)
-    with pytest.raises(PlanningError) as caught:
-        read_pgm(path)
-    assert said in str(caught.value)
-    assert "map.pgm" in str(caught.value)
-    assert "\n" not in str(caught.value)
+    ]:
+        with subtests.test(data=data, said=said):
+            path = saved(tmp_path, data)
+            with pytest.raises(PlanningError) as caught:
+                read_pgm(path)
+            assert said in str(caught.value)
+            assert "map.pgm" in str(caught.value)
+            assert "\n" not in str(caught.value)
 
 
 def test_a_map_may_have_as_many_pixels_as_allowed(tmp_path: Path) -> None:

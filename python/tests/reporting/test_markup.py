@@ -8,9 +8,8 @@ import pytest
 from slipwise.reporting.markup import escape, legend, number, table
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
+def test_number_has_three_digits_or_a_dash(subtests: pytest.Subtests) -> None:
+    for value, text in [
         (0.0, "0"),
         (0.060789, "0.0608"),
         (-12.345, "−12.3"),
@@ -19,10 +18,9 @@ from slipwise.reporting.markup import escape, legend, number, table
         (1.6e9, "1.6e+09"),
         (float("nan"), "–"),
         (float("inf"), "–"),
-    ],
-)
-def test_number_has_three_digits_or_a_dash(value: float, text: str) -> None:
-    assert number(value) == text
+    ]:
+        with subtests.test(value=value, text=text):
+            assert number(value) == text
 
 
 def test_escape_leaves_no_markup_no_control_characters_and_valid_utf_8() -> None:

@@ -19,21 +19,19 @@ def _score(**changes: object) -> Score:
     return replace(score, **{"windows": 40, "nis": 3.1, "nis_band": (2.3, 3.8), **changes})
 
 
-@pytest.mark.parametrize(
-    ("coverage", "nis", "answer"),
-    [
+def test_answer_follows_coverage_and_nis(subtests: pytest.Subtests) -> None:
+    for coverage, nis, answer in [
         (0.95, 3.1, "Yes"),
         (1.0, 1.2, "Yes, with a margin"),
         (0.925, 4.4, "Nearly, it is a little small"),
         (0.80, 12.0, "No, it is too small"),
         (0.80, 3.1, "No, it is too small"),
-    ],
-)
-def test_answer_follows_coverage_and_nis(coverage: float, nis: float, answer: str) -> None:
-    honesty = honesty_of(_score(coverage=(0.5, 0.9, coverage), nis=nis))
-    assert honesty is not None
-    assert honesty.answer == answer
-    assert honesty.sentence.count(f"{round(40 * coverage)} of 40 measured ends") == 1
+    ]:
+        with subtests.test(coverage=coverage, nis=nis, answer=answer):
+            honesty = honesty_of(_score(coverage=(0.5, 0.9, coverage), nis=nis))
+            assert honesty is not None
+            assert honesty.answer == answer
+            assert honesty.sentence.count(f"{round(40 * coverage)} of 40 measured ends") == 1
 
 
 def test_errors_of_a_covariance_four_times_too_small_are_twice_as_large() -> None:

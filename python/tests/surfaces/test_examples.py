@@ -12,9 +12,8 @@ from slipwise.surfaces import slip_examples
 DRIVE, SLIP = np.array([[1.0, 0.2], [2.0, -0.1]]), np.zeros((2, 3))
 
 
-@pytest.mark.parametrize(
-    ("drive", "slip", "std", "said"),
-    [
+def test_wrong_examples_are_refused_in_one_line(subtests: pytest.Subtests) -> None:
+    for drive, slip, std, said in [
         (np.zeros((0, 2)), np.zeros((0, 3)), None, "shape"),
         (DRIVE[:, :1], SLIP, None, "rows of 2"),
         (DRIVE, SLIP[:1], None, "do not match"),
@@ -23,12 +22,11 @@ DRIVE, SLIP = np.array([[1.0, 0.2], [2.0, -0.1]]), np.zeros((2, 3))
         (DRIVE * [[1.0], [np.nan]], SLIP, None, "first in row 1"),
         (DRIVE, SLIP + np.inf, None, "not finite"),
         (DRIVE, "slip", None, "no numbers"),
-    ],
-)
-def test_wrong_examples_are_refused_in_one_line(drive: object, slip: object, std: object, said: str) -> None:
-    with pytest.raises(SettingsError, match=said) as caught:
-        slip_examples(drive, slip, std)  # type: ignore[arg-type]
-    assert "\n" not in str(caught.value)
+    ]:
+        with subtests.test(drive=drive, slip=slip, std=std, said=said):
+            with pytest.raises(SettingsError, match=said) as caught:
+                slip_examples(drive, slip, std)  # type: ignore[arg-type]
+            assert "\n" not in str(caught.value)
 
 
 def test_examples_that_repeat_are_kept_counted_and_said_aloud(caplog: pytest.LogCaptureFixture) -> None:

@@ -58,21 +58,19 @@ def test_what_is_left_out_is_counted(tmp_path: Path) -> None:
     assert "left out: 1 rows whose time does not go on" in " ".join(notes)
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
+def test_a_table_that_says_nothing_is_refused(tmp_path: Path, subtests: pytest.Subtests) -> None:
+    for text, message in [
         ("time,x,y\n0,1,2\n", "neither IMU nor motor currents"),
         ("wx,wy,wz,ax,ay,az\n0,0,0,0,0,0\n", "neither IMU nor motor currents"),
         (IMU + "0,0,0,0,0,0,9\n", "no run has a measurement"),
         (IMU + "0,0,0,zero,0,0,9\n", "not a tidy table"),
         ("", "the file is empty"),
-    ],
-)
-def test_a_table_that_says_nothing_is_refused(tmp_path: Path, text: str, message: str) -> None:
-    path = tmp_path / "table.csv"
-    path.write_text(text)
-    with pytest.raises(LogError, match=message):
-        read_recordings([path])
+    ]:
+        with subtests.test(text=text, message=message):
+            path = tmp_path / "table.csv"
+            path.write_text(text)
+            with pytest.raises(LogError, match=message):
+                read_recordings([path])
 
 
 def test_one_run_with_a_sensor_in_two_files_is_refused(tmp_path: Path) -> None:

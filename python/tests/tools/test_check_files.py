@@ -17,9 +17,8 @@ def test_a_file_at_the_limit_is_accepted_and_one_line_more_is_not() -> None:
     assert "401 lines" in fault
 
 
-@pytest.mark.parametrize(
-    ("path", "text"),
-    [
+def test_a_source_without_the_licence_line_on_top_is_refused(subtests: pytest.Subtests) -> None:
+    for path, text in [
         ("a/b.py", ""),
         ("a/b.py", '"""No licence."""\n'),
         ("a/b.hpp", PYTHON),
@@ -27,11 +26,10 @@ def test_a_file_at_the_limit_is_accepted_and_one_line_more_is_not() -> None:
         ("CMakeLists.txt", "project(x)\n"),
         ("tools/run.sh", "#!/bin/sh\necho\n"),
         (".ci/run", "#!/bin/sh\n"),
-    ],
-)
-def test_a_source_without_the_licence_line_on_top_is_refused(path: str, text: str) -> None:
-    (fault,) = faults_of(path, text)
-    assert "does not start with" in fault
+    ]:
+        with subtests.test(path=path, text=text):
+            (fault,) = faults_of(path, text)
+            assert "does not start with" in fault
 
 
 def test_the_licence_line_may_follow_the_interpreter_line() -> None:
@@ -57,15 +55,21 @@ def test_only_files_that_git_does_not_ignore_are_checked(tmp_path: Path) -> None
     assert fault.startswith("seen one.py: ")
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["wanders", "SlipWander", "check_wander", "its belief", "kept_beliefs", "ColouredSlip", "learn anew"],
-)
-def test_a_retired_word_is_refused_in_the_product_with_what_replaces_it(text: str) -> None:
-    source = f"{PYTHON}# {text}\n"
-    (fault,) = faults_of("python/slipwise/a.py", source)
-    assert "is retired; write " in fault
-    assert faults_of("python/tests/a.py", source) == []
+def test_a_retired_word_is_refused_in_the_product_with_what_replaces_it(subtests: pytest.Subtests) -> None:
+    for text in [
+        "wanders",
+        "SlipWander",
+        "check_wander",
+        "its belief",
+        "kept_beliefs",
+        "ColouredSlip",
+        "learn anew",
+    ]:
+        with subtests.test(text=text):
+            source = f"{PYTHON}# {text}\n"
+            (fault,) = faults_of("python/slipwise/a.py", source)
+            assert "is retired; write " in fault
+            assert faults_of("python/tests/a.py", source) == []
 
 
 @pytest.mark.parametrize("text", ["a new one", "coloured noise", "a command and its chain", "yaw and error"])

@@ -53,19 +53,17 @@ def test_what_an_extra_needs_is_installed_by_name() -> None:
     assert to_install("live") == "pip install 'starlette>=0.40' 'uvicorn>=0.30'"
 
 
-@pytest.mark.parametrize(
-    ("text", "names"),
-    [
+def test_extras_are_found_in_text(subtests: pytest.Subtests) -> None:
+    for text, names in [
         ('pip install "slipwise[gp]"', ["gp"]),
         ("needs slipwise[gp, sim]", ["gp, sim"]),
         ('`".[plot]"`', ["plot"]),
         ("pip install .[sim]", ["sim"]),
         ("slipwise[0]", []),
         ("path.[sim]", []),
-    ],
-)
-def test_extras_are_found_in_text(text: str, names: list[str]) -> None:
-    assert EXTRAS.findall(text) == names
+    ]:
+        with subtests.test(text=text, names=names):
+            assert EXTRAS.findall(text) == names
 
 
 def test_an_unknown_part_is_refused() -> None:
@@ -73,9 +71,8 @@ def test_an_unknown_part_is_refused() -> None:
         requirements(PROJECT, "docs")
 
 
-@pytest.mark.parametrize(
-    "part",
-    [
+def test_every_requirement_has_a_pinned_version(subtests: pytest.Subtests) -> None:
+    for part in [
         "build",
         "native",
         "run",
@@ -85,12 +82,11 @@ def test_an_unknown_part_is_refused() -> None:
         "packages/slipwise-thesis",
         "dev",
         "bench",
-    ],
-)
-def test_every_requirement_has_a_pinned_version(part: str) -> None:
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
-    pinned = {line.split("==")[0] for line in lines if "==" in line}
-    for requirement in requirements(project, part):
-        name = re.split(r"[<>=!~\[; ]", requirement)[0].lower().replace("_", "-")
-        assert name in pinned
+    ]:
+        with subtests.test(part=part):
+            project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+            lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+            pinned = {line.split("==")[0] for line in lines if "==" in line}
+            for requirement in requirements(project, part):
+                name = re.split(r"[<>=!~\[; ]", requirement)[0].lower().replace("_", "-")
+                assert name in pinned

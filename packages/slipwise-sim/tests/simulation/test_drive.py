@@ -47,12 +47,13 @@ def test_random_driving_has_turns_in_place_stops_and_reversals() -> None:
     assert np.sum(v >= 0.3) > 2000
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_commands_stay_within_the_limits(seed: int) -> None:
-    drive = thesis_drive(seed, 400.0)
-    assert drive.v.max() <= TOP_SPEED
-    assert drive.v.min() >= -TOP_REVERSE
-    assert np.abs(drive.omega).max() <= TOP_YAW_RATE
+def test_commands_stay_within_the_limits(subtests: pytest.Subtests) -> None:
+    for seed in range(5):
+        with subtests.test(seed=seed):
+            drive = thesis_drive(seed, 400.0)
+            assert drive.v.max() <= TOP_SPEED
+            assert drive.v.min() >= -TOP_REVERSE
+            assert np.abs(drive.omega).max() <= TOP_YAW_RATE
 
 
 def test_random_driving_is_smooth_and_joins_the_last_circle() -> None:
@@ -68,13 +69,14 @@ def test_same_seed_gives_the_same_drive_and_another_seed_another() -> None:
     assert not np.array_equal(first.v, other.v)
 
 
-@pytest.mark.parametrize("duration", [0.01, 0.05, 1.0, 20.0, 20.01])
-@pytest.mark.parametrize("name", sorted(DRIVES))
-def test_commands_come_at_20_hz_until_the_end(name: str, duration: float) -> None:
-    drive = DRIVES[name](0, duration)
-    assert drive.t[0] == 0
-    assert drive.t[-1] < duration <= drive.t[-1] + 0.05 + 1e-9
-    np.testing.assert_allclose(np.diff(drive.t), 0.05, atol=1e-12)
+def test_commands_come_at_20_hz_until_the_end(subtests: pytest.Subtests) -> None:
+    for duration in [0.01, 0.05, 1.0, 20.0, 20.01]:
+        for name in sorted(DRIVES):
+            with subtests.test(duration=duration, name=name):
+                drive = DRIVES[name](0, duration)
+                assert drive.t[0] == 0
+                assert drive.t[-1] < duration <= drive.t[-1] + 0.05 + 1e-9
+                np.testing.assert_allclose(np.diff(drive.t), 0.05, atol=1e-12)
 
 
 def test_short_drive_leaves_circles_out_rather_than_hurry() -> None:

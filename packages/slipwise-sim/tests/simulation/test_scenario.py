@@ -108,9 +108,8 @@ def test_late_poses_have_late_stamps_and_the_same_places() -> None:
     np.testing.assert_array_equal(late.truth.t, prompt.truth.t)
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
+def test_senseless_scenario_is_refused(subtests: pytest.Subtests) -> None:
+    for change, message in [
         ({"duration": -1.0}, "duration is -1.0"),
         ({"duration": float("nan")}, "duration is nan"),
         ({"duration": 1e9}, "duration is 1000000000.0"),
@@ -123,11 +122,9 @@ def test_late_poses_have_late_stamps_and_the_same_places() -> None:
         ({"pose_delay": float("nan")}, "pose_delay is nan"),
         ({"terrain": "ice"}, "unknown terrain 'ice'.*tyre-force, traction-law, contact-friction"),
         ({"drive": "rally"}, "unknown drive 'rally'.*thesis, steps, dull"),
-    ],
-)
-def test_senseless_scenario_is_refused(change: dict[str, object], message: str) -> None:
-    with pytest.raises(SettingsError, match=message):
-        simulate(replace(SHORT, **change), seed=0)  # type: ignore[arg-type]
+    ]:
+        with subtests.test(change=change, message=message), pytest.raises(SettingsError, match=message):
+            simulate(replace(SHORT, **change), seed=0)  # type: ignore[arg-type]
 
 
 def test_empty_commands_are_refused() -> None:

@@ -33,16 +33,17 @@ def _named(lines: list[str], name: str) -> str:
     return next(line for line in lines if line.startswith(name))
 
 
-@pytest.mark.parametrize("width", [20, 40, 80, 100, 200])
-@pytest.mark.parametrize("height", [6, 12, 24, 60])
-def test_it_fits_every_terminal(width: int, height: int) -> None:
-    notes = [Note(float(i), f"note {i} " + "x" * 300) for i in range(20)]
-    status = replace(driven_status(), log=tuple((n.t, n.text) for n in notes))
-    moves = (status, next_moves())
-    for outputs in (driven_outputs(), notes, (status,), (waiting_status(),), moves):
-        lines = _lines(width, height, *outputs)
-        assert max(map(len, lines)) <= width
-        assert len(lines) < height
+def test_it_fits_every_terminal(subtests: pytest.Subtests) -> None:
+    for width in [20, 40, 80, 100, 200]:
+        for height in [6, 12, 24, 60]:
+            with subtests.test(width=width, height=height):
+                notes = [Note(float(i), f"note {i} " + "x" * 300) for i in range(20)]
+                status = replace(driven_status(), log=tuple((n.t, n.text) for n in notes))
+                moves = (status, next_moves())
+                for outputs in (driven_outputs(), notes, (status,), (waiting_status(),), moves):
+                    lines = _lines(width, height, *outputs)
+                    assert max(map(len, lines)) <= width
+                    assert len(lines) < height
 
 
 def test_a_common_terminal_shows_what_matters() -> None:

@@ -57,14 +57,15 @@ def test_a_page_at_loopback_needs_no_token(page: WebPage) -> None:
     assert b"<title>slipwise live</title>" in answer.read()
 
 
-@pytest.mark.parametrize("path", ["/", "/live.js", "/live.css", "/plotly.js", "/events"])
-def test_every_answer_has_its_security_headers(page: WebPage, path: str) -> None:
-    headers = _ask(page, path).headers
-    assert "default-src 'none'; script-src 'self';" in str(headers["Content-Security-Policy"])
-    assert headers["X-Content-Type-Options"] == "nosniff"
-    assert headers["Referrer-Policy"] == "no-referrer"
-    assert headers["Access-Control-Allow-Origin"] is None
-    assert headers["Cache-Control"] == "no-store"
+def test_every_answer_has_its_security_headers(page: WebPage, subtests: pytest.Subtests) -> None:
+    for path in ["/", "/live.js", "/live.css", "/plotly.js", "/events"]:
+        with subtests.test(path=path):
+            headers = _ask(page, path).headers
+            assert "default-src 'none'; script-src 'self';" in str(headers["Content-Security-Policy"])
+            assert headers["X-Content-Type-Options"] == "nosniff"
+            assert headers["Referrer-Policy"] == "no-referrer"
+            assert headers["Access-Control-Allow-Origin"] is None
+            assert headers["Cache-Control"] == "no-store"
 
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "PATCH"])

@@ -12,9 +12,8 @@ USUAL = Quality(reliable=True, latched=False)
 LATCHED = Quality(reliable=True, latched=True)
 
 
-@pytest.mark.parametrize(
-    ("offered", "latched", "asked"),
-    [
+def test_the_weakest_publisher_decides(subtests: pytest.Subtests) -> None:
+    for offered, latched, asked in [
         ([], False, USUAL),
         ([], True, LATCHED),
         ([LATCHED], False, USUAL),
@@ -22,7 +21,6 @@ LATCHED = Quality(reliable=True, latched=True)
         ([USUAL, LATCHED], True, USUAL),
         ([USUAL, BEST_EFFORT], False, BEST_EFFORT),
         ([BEST_EFFORT], True, BEST_EFFORT),
-    ],
-)
-def test_the_weakest_publisher_decides(offered: list[Quality], latched: bool, asked: Quality) -> None:
-    assert hearing_all(offered, latched=latched) == asked
+    ]:
+        with subtests.test(offered=offered, latched=latched, asked=asked):
+            assert hearing_all(offered, latched=latched) == asked

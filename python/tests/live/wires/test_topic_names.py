@@ -14,9 +14,7 @@ def test_absolute_names_are_taken(name: str) -> None:
     assert require_topic(name) == name
 
 
-@pytest.mark.parametrize(
-    "name", ["", "/", "odom", "~/odom", "/odom/", "//odom", "/1st", "/o dom", "/odom*", "/ödom"]
-)
-def test_other_names_are_refused(name: str) -> None:
-    with pytest.raises(SettingsError, match="no name of a topic"):
-        require_topic(name)
+def test_other_names_are_refused(subtests: pytest.Subtests) -> None:
+    for name in ["", "/", "odom", "~/odom", "/odom/", "//odom", "/1st", "/o dom", "/odom*", "/ödom"]:
+        with subtests.test(name=name), pytest.raises(SettingsError, match="no name of a topic"):
+            require_topic(name)
