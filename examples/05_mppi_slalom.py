@@ -27,7 +27,7 @@ slalom = np.column_stack((x, 1.2 * np.sin(2.0 * np.pi * x / 10.0) * np.clip(x / 
 options = MppiOptions(rollouts=1024)
 
 
-def drive(motions: list[Motion], seconds: float) -> np.ndarray:
+def drive(motions: sw.Model | list[Motion], seconds: float) -> np.ndarray:
     """Follow the slalom; return the cross-track errors [m]."""
     robot = LiveRobot(World(LandTamer(), "tyre-force", TyreLaw()), period=options.period)
     controller = Controller(motions, ReferencePath(slalom, speed=1.0), options=options)
@@ -45,7 +45,7 @@ def drive(motions: list[Motion], seconds: float) -> np.ndarray:
 
 # %%
 rms = {}
-for name, motions in (("plain", [baseline_motion()]), ("learned", learned_motions(model))):
+for name, motions in (("plain", [baseline_motion()]), ("learned", model)):
     errors = drive(motions, 18.0)
     rms[name] = float(np.sqrt(np.mean(errors**2)))
     print(f"{name}: cross-track error {rms[name]:.2f} m rms, {np.abs(errors).max():.2f} m at most")

@@ -63,8 +63,23 @@ _HOMES = {
     "slipwise.prediction": ("Path",),
 }
 
+#: What to use in place of names that one might guess.
+_HINTS = {
+    "load": "load_model for a model file, open_log for a log",
+    "read": "open_log",
+    "load_log": "open_log",
+    "read_log": "open_log",
+    "fit": "calibrate",
+    "learn": "calibrate",
+    "train": "calibrate",
+    "export": "export_model",
+    "save": "model.save(path), or save_log",
+    "Controller": "slipwise.planning.Controller",
+    "ReferencePath": "slipwise.planning.ReferencePath",
+    "rollout": "slipwise.planning.rollout",
+}
 
-_public = lazy_names(__name__, _HOMES)
+_public = lazy_names(__name__, _HOMES, _HINTS)
 
 
 def __getattr__(name: str) -> Any:

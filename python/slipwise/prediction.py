@@ -17,6 +17,7 @@ from slipwise.ground import ElevationMap, Ground, Pose
 from slipwise.logs.log import Inputs
 from slipwise.models.model import Model
 from slipwise.models.schema import StudentT
+from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.number_text import number_text
 from slipwise.path_figure import path_figure
 from slipwise.student import LEAST_DOF, MOST_DOF
@@ -51,6 +52,30 @@ class Path:
         """The poses as x, y, z [m], roll, pitch, yaw [rad], [N, 6]; the z axis of their frame is vertical."""
         standing = np.zeros((len(self.t), 3)) if self.standing is None else self.standing
         return np.column_stack((self.poses[:, :2], standing, self.poses[:, 2]))
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    @property
+    def x(self) -> Floats:
+        """Metres ahead of the start, [N]."""
+        return self.poses[:, 0]
+
+    @property
+    def y(self) -> Floats:
+        """Metres to the left of the start, [N]."""
+        return self.poses[:, 1]
+
+    @property
+    def yaw(self) -> Floats:
+        """Headings [rad], not wrapped, [N]."""
+        return self.poses[:, 2]
+
+    @property
+    def end(self) -> Floats:
+        """The last pose: x, y [m], yaw [rad]."""
+        last: Floats = self.poses[-1]
+        return last
 
     def __repr__(self) -> str:
         x, y, yaw = (number_text(value) for value in self.poses[-1].tolist())
@@ -129,6 +154,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             f"a horizon of {horizon:g} s is too long", advice=f"give {LONGEST_HORIZON:g} s at most"
         )
     _check_speeds("commands", inputs.v, inputs.vy, inputs.omega)
+    warn_of_unseen_speeds(model, inputs.v, inputs.omega, stacklevel=3)
     begin = float(inputs.t[0]) if start is None else start
     if not (np.isfinite(begin) and begin >= inputs.t[0]):
         raise SettingsError("the start must not lie before the first command", advice="give earlier commands")

@@ -60,9 +60,9 @@ def fleet_page(
         Part(
             "The fleet",
             "The median of each vehicle's logs, below it their least and most. It drives and turns so much "
-            "of what is commanded, or of what the wheels say; a lag is the time to 63 % of a step; errors are "
-            "those of held-out predictions at the longest horizon.",
-            bullets(summary(columns, findings, unusable)) + (_vehicles(columns) if columns else ""),
+            "of what is commanded, or of what the wheels say; a lag is the time to 63 % of a step; errors "
+            "are those of held-out predictions at the longest horizon.",
+            _summary(columns, findings, unusable) + (_vehicles(columns) if columns else ""),
         ),
         Part(
             "What stands out",
@@ -97,7 +97,7 @@ def _difference(found: ParameterFindings) -> float:
 
 
 def _vehicles(columns: Columns) -> str:
-    """Return the table of vehicles, and a warning where they look like two types of robot."""
+    """Return the table of vehicles."""
     rows = []
     for vehicle, of in logs_of(columns).items():
         hours, good = float(columns["seconds"][of].sum()) / 3600.0, int(columns["good"][of].sum())
@@ -108,9 +108,7 @@ def _vehicles(columns: Columns) -> str:
     heads = ("vehicle", *(head for head, *_ in _SHOWN), "logs", "driven")
     head = "".join(f'<th scope="col">{each}</th>' for each in heads)
     html = f'<table class="scores"><thead><tr>{head}</tr></thead><tbody>{"".join(rows)}</tbody></table>'
-    warned = types_apart(columns)
-    warning = f'<div class="verdict reserved">{paragraph(warned)}</div>' if warned else ""
-    return warning + scrolling(html)
+    return scrolling(html)
 
 
 def _spread(columns: Columns, name: str, rows: NDArray[np.int64], scale: float, unit: str) -> str:
@@ -121,6 +119,15 @@ def _spread(columns: Columns, name: str, rows: NDArray[np.int64], scale: float, 
         return DASH
     low, middle, high = (number(float(value), 2) for value in np.quantile(values, (0.0, 0.5, 1.0)))
     return f"{middle}{unit}" + (f"<small>{low} to {high}</small>" if low != high else "")
+
+
+def _summary(
+    columns: Columns, findings: Sequence[ParameterFindings], unusable: Sequence[Mapping[str, Any]]
+) -> str:
+    """Return the fleet in a few sentences, a warning of two types of robot as a banner."""
+    warned = types_apart(columns) if columns else ""
+    sentences = [text for text in summary(columns, findings, unusable) if text != warned]
+    return bullets(sentences) + (f'<div class="verdict reserved">{paragraph(warned)}</div>' if warned else "")
 
 
 def summary(
@@ -143,8 +150,14 @@ def summary(
         f"{len(alarms)} alarms of {tests} tests. A vehicle is compared with the others where there are three "
         f"or more, its drift is tested from {FEWEST_LOGS} logs on."
     )
+    warned = types_apart(columns)
     left = "1 log" if len(unusable) == 1 else f"{len(unusable)} logs"
-    return [driven, *([f"{left} could not be used."] if unusable else []), tested]
+    return [
+        driven,
+        *([f"{left} could not be used."] if unusable else []),
+        *([warned] if warned else []),
+        tested,
+    ]
 
 
 def _alarms(findings: Sequence[ParameterFindings]) -> str:

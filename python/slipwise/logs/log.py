@@ -5,13 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import LogError
+from slipwise.frames import data_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -184,6 +188,20 @@ class Log:
         }
         runs = "1 run" if len(self.runs) == 1 else f"{len(self.runs)} runs"
         return f"<Log: {runs}, {seconds:.0f} s; {', '.join(name for name, there in has.items() if there)}>"
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the log as a pandas data frame with the columns of a tidy table, such as t, cmd_v and x.
+
+        A row is a stamp of a run; cells are empty where the row has no such number.
+
+        Raises:
+            LogError: the log holds nothing.
+            SlipwiseError: pandas is not installed.
+        """
+        from slipwise.logs.write_tidy import tidy_table
+
+        table = tidy_table(self)
+        return data_frame({name: table[name].to_numpy() for name in table.column_names})
 
 
 def has_course(runs: Iterable[Run]) -> bool:

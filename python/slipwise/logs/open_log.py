@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import contextlib
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 from slipwise.addresses import shown
 from slipwise.errors import LogError, SettingsError
@@ -29,23 +30,36 @@ _KNOWN = (
 _GUESS = LogOptions()
 
 
-def open_log(*paths: str | Path, options: LogOptions = _GUESS) -> Log:
+def open_log(*paths: str | Path, options: LogOptions = _GUESS, **changes: Any) -> Log:
     """Read one or several files as one log; runs of different files are never joined.
 
     Args:
         paths: tidy tables (CSV, CSV.gz, Parquet), bags (rosbag1, rosbag2 folder or .db3, MCAP), and logs of
             autopilots (ArduPilot .bin and .tlog, PX4 .ulg); or addresses (https://, s3://, gs://).
-        options: what cannot be guessed.
+        options: what slipwise cannot guess.
+        changes: single fields of `LogOptions` in their place, such as start=10.0 or pose_topic="/rtk/odom".
 
     Raises:
         LogError: a file is missing, damaged, of an unknown kind, or says something impossible.
+        SettingsError: there is no such option, or its value makes no sense.
     """
+    if changes:
+        options = _changed(options, changes)
     if not paths:
         raise LogError("no log was given", advice=_KNOWN)
     if len(paths) > 1 and options.poses is not None:
         advice = "read the logs one by one, each with its own poses"
         raise SettingsError("one file of poses goes with one log", where="--poses", advice=advice)
     return joined([_open_one(Path(path), options) for path in paths])
+
+
+def _changed(options: LogOptions, changes: Mapping[str, Any]) -> LogOptions:
+    given = {field.name: getattr(options, field.name) for field in fields(options)}
+    unknown = ", ".join(sorted(changes.keys() - given.keys()))
+    if unknown:
+        advice = f"it has {', '.join(given)}"
+        raise SettingsError(f"no such option: {unknown}", where="open_log", advice=advice)
+    return LogOptions.of({**given, **changes})
 
 
 def readable(path: Path, most_fetched: float = MOST_FETCHED) -> tuple[Path, bool]:
@@ -69,6 +83,9 @@ def readable(path: Path, most_fetched: float = MOST_FETCHED) -> tuple[Path, bool
     except PermissionError as error:
         raise LogError("no permission to read", where=shown(path), advice="check the file's owner") from error
     path = Path(shown(path))
+    if path.suffix in (".yaml", ".yml"):
+        advice = f"`slipwise show {path}` says what it holds"
+        raise LogError("a model, not a log", where=shown(path), advice=advice)
     if not start:
         raise LogError("the file is empty", where=shown(path), advice="record or copy it again")
     if path.suffix in (".mcap", ".db3", ".bag"):

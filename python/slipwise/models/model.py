@@ -18,9 +18,10 @@ from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.files import write_text_whole
 from slipwise.frames import data_frame
+from slipwise.lazy_names import no_attribute
 from slipwise.models.car import core_car
 from slipwise.models.limits import core_limits
-from slipwise.models.schema import SCHEMA_VERSION, ModelFile
+from slipwise.models.schema import SCHEMA_VERSION, ModelFile, VerdictSection
 from slipwise.models.upgrade import READ_VERSIONS, upgraded
 from slipwise.models.yaml_file import parse_yaml, read_yaml
 from slipwise.validation_text import first_problem
@@ -31,6 +32,15 @@ if TYPE_CHECKING:
     from slipwise.models.parameter_table import PhysicalParameter
 
 _DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # the same text, several times faster in C
+_HINTS = {
+    "predict": "slipwise.predict(model, commands, horizon=5.0)",
+    "evaluate": "slipwise.evaluate(log, model=model)",
+    "rollout": "slipwise.planning.rollout(model, commands, dt)",
+    "export": "slipwise.export_model",
+    "summary": "slipwise.summarise(model)",
+    "params": "model.parameters",
+    "load": "slipwise.load_model(path)",
+}
 EXTRINSICS_PARAMETERS = 3  # the last ones, where there are any
 LONGEST_CHAIN = 1000.0  # s; no drive answers its commands later
 
@@ -96,6 +106,9 @@ class Model:
         head = f"{content.slip.basis} from {content.input}s, {len(content.parameters)} parameters"
         return f"<Model: {head}. {summarise(self).sentences[0]}>"
 
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(no_attribute("a Model", name, _HINTS), name=name, obj=self)
+
     def _repr_html_(self) -> str:
         """What a notebook shows: the summary, and the parameters in physical units."""
         from slipwise.models.summary_html import model_html
@@ -124,6 +137,11 @@ class Model:
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.parameters)
+
+    @property
+    def verdict(self) -> VerdictSection:
+        """Whether the model may be used, in words: `.good`, `.sentence`, `.advice`."""
+        return self.content.verdict
 
     @cached_property
     def parameters(self) -> dict[str, PhysicalParameter]:

@@ -185,6 +185,9 @@ class VerdictSection(_Section):
     contradictions: list[str] = []  # between the poses and the inputs of the log: what was learned is no slip
     held_out: HeldOut | None = None
 
+    def __str__(self) -> str:
+        return " ".join((self.sentence, *self.advice))
+
 
 class LearnedLimit(_Section):
     """One limit of the drive, the same for both signs."""

@@ -35,6 +35,9 @@ class Motion:
     slip_ahead: _core.MixedAhead | None = None  # on surfaces from the robot's place on, where it changes
     car: _core.CarCurves | None = None  # in front of all, where commands are throttle and steering
 
+    def __repr__(self) -> str:
+        return f"<Motion: {self.model.basis.name}, {len(self.parameters)} parameters>"
+
 
 def baseline_motion() -> Motion:
     """Return the motion of a robot that does at once and exactly what it is commanded."""
@@ -199,7 +202,8 @@ class Controller:
     """Follows a reference, one command per period.
 
     Args:
-        motions: through which sampled commands are driven; several where risk counts.
+        motions: through which sampled commands are driven: a learned model, or motions made of one, several
+            where risk counts (`learned_motions`).
         reference: what to follow.
         options: settings.
         obstacles: costs of places, `LETHAL` where a collision is; see `inflated`.
@@ -210,12 +214,19 @@ class Controller:
 
     def __init__(
         self,
-        motions: list[Motion],
+        motions: Model | list[Motion],
         reference: ReferencePath,
         *,
         options: MppiOptions = NOMINAL,
         obstacles: Costmap | None = None,
     ) -> None:
+        if not isinstance(reference, ReferencePath):
+            raise SettingsError(
+                f"a controller follows a ReferencePath, not {type(reference).__name__}",
+                where="controller's reference",
+                advice="such as ReferencePath(points, speed=1.0)",
+            )
+        motions = learned_motions(motions) if isinstance(motions, Model) else motions
         self.reference, self.options = reference, options
         self._obstacles = obstacles  # keeps the cells
         try:
@@ -224,12 +235,13 @@ class Controller:
             raise SettingsError(str(problem).splitlines()[0], where="controller options") from problem
         self._past = np.zeros((0, 2))
 
-    def adopt(self, motions: list[Motion]) -> None:
+    def adopt(self, motions: Model | list[Motion]) -> None:
         """Drive through other motions from the next command on; the plan and the commands sent are kept.
 
         Raises:
             SettingsError: there is no motion, or one has no sense.
         """
+        motions = learned_motions(motions) if isinstance(motions, Model) else motions
         try:
             self._core.adopt(_as_core(motions), _car_of(motions, self.options))
         except (ValueError, TypeError) as problem:

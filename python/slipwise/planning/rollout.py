@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.models.model import Model
+from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.device import gpu_of
 from slipwise.planning.start import Start
@@ -33,6 +34,11 @@ class Rollouts:
     end: Numbers | None = None  # [3, N] the same at the end of the last period
     costs: Numbers | None = None  # [3, N] sum, highest and lowest value of the map at the periods' ends
     covariance: NDArray[np.float64] | None = None  # [6, K, N] xx, xy, yy, xt, yt, tt of x, y, yaw
+
+    def __repr__(self) -> str:
+        parts = {f.name: getattr(self, f.name) for f in fields(self)}
+        shown = (f"{name} {list(part.shape)}" for name, part in parts.items() if part is not None)
+        return f"<Rollouts: {', '.join(shown)}>"
 
 
 def command_buffer(rollouts: int, periods: int, dtype: DTypeLike = np.float32) -> Numbers:
@@ -86,6 +92,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     """
     numbers = checked_commands(commands, dtype)
     check_threads(threads)
+    warn_of_unseen_speeds(model, numbers[..., 0], numbers[..., 1], stacklevel=2)
     numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start)
     wanted = _wanted(outputs, costmap)
     rollouts, periods = numbers.shape[:2]

@@ -12,6 +12,7 @@ from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.ground import ElevationMap, Ground, Pose
 from slipwise.models.model import Model
+from slipwise.number_text import number_text
 from slipwise.planning.limits import AT_REST, DriveState, Limits, limits_of
 from slipwise.prediction import Path, predict
 
@@ -62,6 +63,11 @@ class Trajectory:
     t: Floats  # [M] s, of the poses
     poses: Floats  # [M, 3] x, y [m], yaw [rad] in the frame of the goal, the yaw not wrapped
     at_end: DriveState  # when the goal is reached
+
+    def __repr__(self) -> str:
+        x, y, yaw = (number_text(value) for value in self.poses[-1].tolist())
+        commands, seconds = len(self.commands), number_text(self.duration)
+        return f"<Trajectory of {commands} commands over {seconds} s to x {x} m, y {y} m, yaw {yaw} rad>"
 
     @property
     def duration(self) -> float:
