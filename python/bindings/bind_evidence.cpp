@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of what shows whether poses and inputs contradict each other.
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/vector.h>
 
 #include <deque>
+#include <functional>
 #include <vector>
 
 #include "bindings.hpp"
@@ -47,6 +49,31 @@ Rows turn_rows(const std::deque<GyroTurns>& turns) {
   return rows;
 }
 
+/// What both kinds of evidence tell in rows.
+template <class Evidence>
+void define_rows(nb::class_<Evidence>& evidence) {
+  evidence
+      .def_prop_ro(
+          "windows", [](const Evidence& e) { return window_rows(std::invoke(&Evidence::windows, e)); },
+          "Rows of (run, start, since, duration, distance, course, turn, turn_degrees, start_yaw), then (forward, "
+          "sideways, rotation, known) of the commands and the same of the wheels, of poses that the gate accepted.")
+      .def_prop_ro(
+          "measured_windows",
+          [](const Evidence& e) { return window_rows(std::invoke(&Evidence::measured_windows, e)); },
+          "The same of poses as they were measured.")
+      .def(
+          "probed_motions",
+          [](const Evidence& e, double offset) {
+            return motion_rows(probed_motions(std::invoke(&Evidence::probes, e), offset));
+          },
+          "offset"_a,
+          "Pairs of poses a second apart: rows of (x, y, turn) of the second seen from the first, then the same by the "
+          "wheels' path where their clock is `offset` [s] behind.")
+      .def_prop_ro(
+          "gyro_turns", [](const Evidence& e) { return turn_rows(std::invoke(&Evidence::gyro_turns, e)); },
+          "Rows of (run, seconds, sum of products of turns by inputs and gyro, sum of squares by inputs).");
+}
+
 }  // namespace
 
 void bind_evidence(nb::module_& m) {
@@ -54,26 +81,14 @@ void bind_evidence(nb::module_& m) {
       .def_ro("accepted", &GateCounts::accepted)
       .def_ro("outliers", &GateCounts::outliers)
       .def_ro("jumps", &GateCounts::jumps);
-  nb::class_<MotionEvidence>(m, "MotionEvidence", "What shows whether poses and inputs contradict each other.")
-      .def_prop_ro(
-          "windows", [](const MotionEvidence& evidence) { return window_rows(evidence.windows()); },
-          "Rows of (run, start, since, duration, distance, course, turn, turn_degrees, start_yaw), then (forward, "
-          "sideways, rotation, known) of the commands and the same of the wheels, of poses that the gate accepted.")
-      .def_prop_ro(
-          "measured_windows", [](const MotionEvidence& evidence) { return window_rows(evidence.measured_windows()); },
-          "The same of poses as they were measured.")
-      .def(
-          "probed_motions",
-          [](const MotionEvidence& evidence, double offset) {
-            return motion_rows(probed_motions(evidence.probes(), offset));
-          },
-          "offset"_a,
-          "Pairs of poses a second apart, spread over all that was driven: rows of (x, y, turn) of the second seen "
-          "from the first, then the same by the wheels' path where their clock is `offset` [s] behind.")
-      .def_prop_ro(
-          "gyro_turns", [](const MotionEvidence& evidence) { return turn_rows(evidence.gyro_turns()); },
-          "Rows of (run, seconds, sum of products of turns by inputs and gyro, sum of squares by inputs).")
-      .def_prop_ro("counts", &MotionEvidence::counts);
+  nb::class_<RecentEvidence> recent(m, "RecentEvidence",
+                                    "What poses and inputs did in the last two minutes of driving.");
+  recent.def_ro("counts", &RecentEvidence::counts);
+  define_rows(recent);
+  nb::class_<MotionEvidence> all(m, "MotionEvidence", "What shows whether poses and inputs contradict each other.");
+  all.def_prop_ro("counts", &MotionEvidence::counts)
+      .def_prop_ro("recent", &MotionEvidence::recent, "None where all that was driven is recent.");
+  define_rows(all);
   m.def(
       "motion_evidence",
       [](const StreamSettings& settings, const std::vector<Recording>& runs) {

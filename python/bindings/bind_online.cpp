@@ -320,6 +320,8 @@ void bind_online(nb::module_& m) {
           "load", [](const nb::bytes& saved) { return Learner(MotionLearner::load(view_of(saved))); }, "saved"_a,
           "The learner whose bytes these are.")
       .def_prop_ro("settings", locked([](const MotionLearner& learner) { return learner.settings(); }))
+      .def_prop_ro("compared", locked(&MotionLearner::compared),
+                   "How much of the driving was looked at for contradictions; it grows while inputs drive the robot.")
       .def_prop_ro("newest", locked(&MotionLearner::newest));
 }
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from sample_logs import Drive, simulated_log
@@ -80,3 +81,27 @@ def dead_reckoned(wheels: Inputs) -> Poses:
 def with_poses(log: Log, change: Callable[[Poses], Poses]) -> Log:
     """Return the log with the poses of every run changed."""
     return with_runs(log, lambda run: replace(run, poses=change(run.poses)))
+
+
+def teleported(p: Poses) -> Poses:
+    """Every third pose is somewhere else for a while, such as of a localiser that finds itself anew."""
+    rng = np.random.default_rng(2)
+    away = np.repeat(rng.uniform(-20.0, 20.0, (len(p) // 2 + 1, 2)), 2, axis=0)[: len(p)]
+    return replace(p, x=p.x + away[:, 0], y=p.y + away[:, 1])
+
+
+def since(log: Log, change: Callable[[Log], Log], t: float) -> Log:
+    """Return the log with the wheels, commands and poses of another from a time on [s]."""
+
+    def joined(a: Any, b: Any, names: tuple[str, ...]) -> Any:
+        return replace(a, **{name: np.where(a.t < t, getattr(a, name), getattr(b, name)) for name in names})
+
+    def change_run(run: Run) -> Run:
+        (other,) = change(replace(log, runs=(run,))).runs
+        inputs = {
+            name: joined(getattr(run, name), getattr(other, name), ("v", "vy", "omega"))
+            for name in ("commands", "wheels")
+        }
+        return replace(run, poses=joined(run.poses, other.poses, ("x", "y", "yaw")), **inputs)
+
+    return with_runs(log, change_run)

@@ -52,13 +52,15 @@ void WindowCutter::check_loaded() const {
                          w.start_yaw + forward + sideways + rotation + known + w.wheels.forward + w.wheels.sideways +
                          w.wheels.rotation + w.wheels.known);
   };
-  require(std::ranges::all_of(windows_, finite) && first_.has_value() == last_.has_value(),
+  require(std::ranges::all_of(windows_, finite) && std::ranges::all_of(recent_, finite) && recent_.size() <= driven_ &&
+              first_.has_value() == last_.has_value(),
           "windows of motion have numbers that none has");
 }
 
 void ProbeCutter::check_loaded() const {
   const auto forward = [](const WheelProbe& probe) { return goes_forward(probe.path, &StampedPose::t); };
-  require(goes_forward(open_, &StampedPose::t) && std::ranges::all_of(probes_, forward),
+  require(goes_forward(open_, &StampedPose::t) && std::ranges::all_of(probes_, forward) &&
+              std::ranges::all_of(recent_, forward),
           "paths of wheels are not in the order of time");
 }
 
@@ -66,6 +68,8 @@ void MotionEvidence::check_loaded() const {
   measured_.check_loaded();
   accepted_.check_loaded();
   probes_.check_loaded();
+  require(gated_.size() == measured_.recent().size() && last_seconds_.size() <= gyro_seconds_,
+          "the last windows of motion are not those that were counted");
   require(goes_forward(yaw_rates_, &YawRate::t) &&
               (!second_ || (!yaw_rates_.empty() && std::isfinite(*second_) && yaw_rates_.front().t <= *second_)),
           "turns are compared before there are any");

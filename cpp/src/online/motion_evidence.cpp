@@ -17,6 +17,26 @@ constexpr double kKnownPart = 0.9;            // of a second, inputs must be kno
 constexpr double kLongestGap = 4.0;           // [s] between yaw rates; nothing is compared across a longer one
 constexpr std::size_t kMostYawRates = 20000;  // that wait where neither poses nor inputs come
 constexpr std::size_t kMostRuns = 100;
+constexpr std::size_t kRecentSeconds = 120;  // of turning
+
+GateCounts sum(const GateCounts& a, const GateCounts& b) {
+  return {.accepted = a.accepted + b.accepted, .outliers = a.outliers + b.outliers, .jumps = a.jumps + b.jumps};
+}
+
+GateCounts difference(const GateCounts& a, const GateCounts& b) {
+  return {.accepted = a.accepted - b.accepted, .outliers = a.outliers - b.outliers, .jumps = a.jumps - b.jumps};
+}
+
+/// Adds the seconds of one run to the sums of it.
+void add(const GyroTurns& seconds, std::deque<GyroTurns>& runs) {
+  if (runs.empty() || runs.back().run != seconds.run) {
+    runs.push_back({.run = seconds.run});
+  }
+  GyroTurns& turns = runs.back();
+  turns.count += seconds.count;
+  turns.product += seconds.product;
+  turns.square += seconds.square;
+}
 
 }  // namespace
 
@@ -35,7 +55,17 @@ void MotionEvidence::end_run(const InputBuffer& wheels) { probes_.end_run(wheels
 void MotionEvidence::see_stamp(double t) { run_begins_ = run_begins_ && !(std::abs(run_.origin + t) <= kLatestStamp); }
 
 void MotionEvidence::see_measured(const MeasuredPose& pose, const InputBuffer& commands, const InputBuffer& wheels) {
-  measured_.push(run_, pose, commands, wheels);
+  const std::size_t before = measured_.driven();
+  if (!measured_.push(run_, pose, commands, wheels)) {
+    return;
+  }
+  if (measured_.driven() > before) {
+    gated_.push_back(difference(counts_, counts_before_));
+  }
+  while (gated_.size() > measured_.recent().size()) {
+    gated_.pop_front();
+  }
+  counts_before_ = counts_;
 }
 
 void MotionEvidence::see_gated(const GatedPoses& gated, const InputBuffer& commands, const InputBuffer& wheels) {
@@ -75,17 +105,35 @@ void MotionEvidence::compare_second(const InputBuffer& inputs, double start) {
   if (std::abs(held.rotation) <= kTurning * kSecond || held.known <= kKnownPart * kSecond + kSameStamp) {
     return;
   }
-  if (gyro_turns_.empty() || gyro_turns_.back().run != run_.number) {
-    gyro_turns_.push_back({.run = run_.number});
-    if (gyro_turns_.size() > kMostRuns) {
-      gyro_turns_.pop_front();
-    }
-  }
   const double turned = turn_until(start + kSecond) - turn_until(start);
-  GyroTurns& turns = gyro_turns_.back();
-  ++turns.count;
-  turns.product += held.rotation * turned;
-  turns.square += held.rotation * held.rotation;
+  last_seconds_.push_back(
+      {.run = run_.number, .count = 1, .product = held.rotation * turned, .square = held.rotation * held.rotation});
+  ++gyro_seconds_;
+  add(last_seconds_.back(), gyro_turns_);
+  if (gyro_turns_.size() > kMostRuns) {
+    gyro_turns_.pop_front();
+  }
+  if (last_seconds_.size() > kRecentSeconds) {
+    last_seconds_.pop_front();
+  }
+}
+
+std::optional<RecentEvidence> MotionEvidence::recent() const {
+  if (measured_.recent().size() == measured_.driven() && last_seconds_.size() == gyro_seconds_) {
+    return std::nullopt;
+  }
+  RecentEvidence found{.measured_windows = measured_.recent(),
+                       .windows = accepted_.recent(),
+                       .probes = probes_.recent(),
+                       .gyro_turns = {},
+                       .counts = {}};
+  for (const GyroTurns& second : last_seconds_) {
+    add(second, found.gyro_turns);
+  }
+  for (const GateCounts& each : gated_) {
+    found.counts = sum(found.counts, each);
+  }
+  return found;
 }
 
 /// The gyro's turn from its first sample to `t`, rates between samples being on a line [rad].

@@ -18,6 +18,13 @@ constexpr double kKnownPart = 0.9;          // of a window's time, inputs must b
 constexpr double kChord = 0.1;              // [m] from one position to the next that tells a course
 constexpr std::size_t kMostWindows = 4000;  // a hundred minutes
 constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kDriven = 0.05;   // [m] by the inputs; slower ones may be inside a dead band
+constexpr double kTurnArm = 0.3;   // [m] at which a turn counts as distance
+constexpr double kRecent = 120.0;  // [s] of driving
+
+double motion_of(const HeldMotion& held) {
+  return std::hypot(held.forward, held.sideways) + kTurnArm * std::abs(held.rotation);
+}
 
 }  // namespace
 
@@ -30,7 +37,7 @@ void WindowCutter::start_run() {
   course_from_.reset();
 }
 
-void WindowCutter::push(const NumberedRun& run, const MeasuredPose& pose, const InputBuffer& commands,
+bool WindowCutter::push(const NumberedRun& run, const MeasuredPose& pose, const InputBuffer& commands,
                         const InputBuffer& wheels) {
   Seen seen{.t = pose.t, .x = pose.x, .y = pose.y, .yaw = pose.yaw, .frame = pose.frame};
   run_began_ = run_began_.value_or(seen.t);
@@ -45,18 +52,20 @@ void WindowCutter::push(const NumberedRun& run, const MeasuredPose& pose, const 
     frame_began_ = seen.t;
     slot_ = turn_ = turn_degrees_ = 0.0;
     first_ = last_ = seen;
-    return;
+    return true;
   }
   turn_ += within_half_turn(seen.yaw - present(last_).yaw, kTurn);
   turn_degrees_ += within_half_turn(seen.yaw - present(last_).yaw, 360.0);
   last_ = seen;
   const double slot = std::floor((seen.t - frame_began_ + kSameStamp) / kLength);
-  if (slot != slot_) {
-    close(run, seen, commands, wheels);
-    slot_ = slot;
-    turn_ = turn_degrees_ = 0.0;
-    first_ = seen;
+  if (slot == slot_) {
+    return false;
   }
+  close(run, seen, commands, wheels);
+  slot_ = slot;
+  turn_ = turn_degrees_ = 0.0;
+  first_ = seen;
+  return true;
 }
 
 void WindowCutter::close(const NumberedRun& run, const Seen& last, const InputBuffer& commands,
@@ -80,8 +89,26 @@ void WindowCutter::close(const NumberedRun& run, const Seen& last, const InputBu
                       .start_yaw = first.yaw,
                       .commands = commanded,
                       .wheels = rolled});
+  keep_recent(windows_.back());
   if (windows_.size() > kMostWindows) {
     windows_.pop_front();
+  }
+}
+
+/// However long the robot stands between: a parked robot shows nothing, and forgets nothing.
+void WindowCutter::keep_recent(const MotionWindow& window) {
+  if (std::max(motion_of(window.commands), motion_of(window.wheels)) <= kDriven) {
+    return;
+  }
+  ++driven_;
+  recent_.push_back(window);
+  double seconds = 0.0;
+  for (const MotionWindow& each : recent_) {
+    seconds += each.duration;
+  }
+  while (seconds - recent_.front().duration >= kRecent) {
+    seconds -= recent_.front().duration;
+    recent_.pop_front();
   }
 }
 

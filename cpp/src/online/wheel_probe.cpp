@@ -17,6 +17,8 @@ constexpr double kApart = 0.3;       // [s] the clocks of poses and wheels are t
 constexpr double kMoving = 0.05;     // [m] by the wheels
 constexpr double kInterval = 0.004;  // [s] between points of the path at least
 constexpr std::size_t kMostProbes = 128;
+constexpr double kRecentApart = 2.0;  // [s] from one of the last pairs to the next
+constexpr std::size_t kMostRecent = 60;
 
 /// Up to the last sample until `end`: which ones came after it must not matter.
 std::vector<StampedPose> path_of(double start, double end, const InputBuffer& wheels) {
@@ -39,6 +41,7 @@ std::vector<StampedPose> path_of(double start, double end, const InputBuffer& wh
 void ProbeCutter::start_run() {
   open_.clear();
   waiting_.clear();
+  recent_until_.reset();
 }
 
 void ProbeCutter::end_run(const InputBuffer& wheels) {
@@ -52,7 +55,7 @@ void ProbeCutter::push(const MeasuredPose& pose, const InputBuffer& wheels) {
   if (wheels.empty() || later(wheels.first(), pose.t) || pose.position) {
     return;
   }
-  while (!waiting_.empty() && later(pose.t, waiting_.front().last.t + kApart)) {
+  while (!waiting_.empty() && later(pose.t, waiting_.front().probe.last.t + kApart)) {
     keep(waiting_.front(), wheels);
     waiting_.pop_front();
   }
@@ -64,19 +67,33 @@ void ProbeCutter::push(const MeasuredPose& pose, const InputBuffer& wheels) {
   for (; !open_.empty() && !later(open_.front().t + kLength, seen.t); open_.pop_front()) {
     const StampedPose& first = open_.front();
     const HeldMotion rolled = wheels.held_motion(first.t, seen.t);
-    if (seen.t - first.t < kLongest - kSameStamp && std::hypot(rolled.forward, rolled.sideways) > kMoving &&
-        ++passed_ >= every_) {
-      passed_ = 0;
-      waiting_.push_back({.first = first, .last = seen, .path = {}});
+    if (seen.t - first.t >= kLongest - kSameStamp || std::hypot(rolled.forward, rolled.sideways) <= kMoving) {
+      continue;
+    }
+    const bool spread = ++passed_ >= every_;
+    const bool recent = !recent_until_ || !later(*recent_until_, first.t);
+    passed_ = spread ? 0 : passed_;
+    recent_until_ = recent ? first.t + kRecentApart : recent_until_;
+    if (spread || recent) {
+      waiting_.push_back({.probe = {.first = first, .last = seen, .path = {}}, .spread = spread, .recent = recent});
     }
   }
   open_.push_back(seen);
 }
 
 /// Where there are too many, every other one goes, and fewer are kept from then on.
-void ProbeCutter::keep(WheelProbe probe, const InputBuffer& wheels) {
+void ProbeCutter::keep(Waiting waiting, const InputBuffer& wheels) {
+  WheelProbe& probe = waiting.probe;
   probe.path = path_of(probe.first.t - kApart, probe.last.t + kApart, wheels);
-  probes_.push_back(std::move(probe));
+  if (waiting.recent) {
+    recent_.push_back(probe);
+    if (recent_.size() > kMostRecent) {
+      recent_.erase(recent_.begin());
+    }
+  }
+  if (waiting.spread) {
+    probes_.push_back(std::move(probe));
+  }
   if (probes_.size() < 2 * kMostProbes) {
     return;
   }

@@ -18,6 +18,21 @@ namespace {
 using tests::learner_settings;
 using tests::streamed_robot;
 
+/// A robot that drives on an arc for some time, with hours at a standstill in the middle.
+Recording parked_between(double before, double parked, double after) {
+  Recording run;
+  Pose2 pose;
+  for (int i = 0; 0.1 * i < before + parked + after; ++i) {
+    const double t = 0.1 * i;
+    const bool stands = t >= before && t < before + parked;
+    const BodyTwist twist = stands ? BodyTwist{} : BodyTwist{0.5, 0.0, 0.3};
+    run.wheels.push_back({t, twist});
+    run.poses.push_back({.t = t, .x = pose.x, .y = pose.y, .yaw = pose.theta});
+    pose = compose(pose, exp(Eigen::Vector3d(twist.v, twist.vy, twist.omega) * 0.1));
+  }
+  return run;
+}
+
 std::string bytes_of(const MotionEvidence& evidence) {
   archive::Writer writer;
   writer(evidence);
@@ -61,6 +76,26 @@ TEST_CASE("pairs of poses are spread over all that was driven, with the wheels' 
   }
 }
 
+TEST_CASE("evidence of the last two minutes of driving counts no time at a standstill") {
+  StreamSettings settings;
+  settings.from_commands = false;
+  CHECK_FALSE(motion_evidence(settings, std::vector{parked_between(60.0, 300.0, 40.0)}).recent());
+  const auto recent = motion_evidence(settings, std::vector{parked_between(300.0, 300.0, 40.0)}).recent();
+  REQUIRE(recent);
+  double seconds = 0.0;
+  for (const MotionWindow& window : recent->windows) {
+    seconds += window.duration;
+    CHECK(window.distance > 0.3);
+  }
+  CHECK(seconds >= 120.0);
+  CHECK(seconds < 122.0);
+  CHECK(recent->windows.front().start == doctest::Approx(300.0 - 80.0).epsilon(0.02));
+  CHECK(recent->measured_windows.size() == recent->windows.size());
+  CHECK(recent->counts.accepted >= 1180);
+  CHECK(recent->counts.accepted <= 1220);
+  CHECK(recent->probes.size() == 60);
+}
+
 TEST_CASE("turns of a gyro are summed against those of the inputs, run by run") {
   StreamSettings settings;
   settings.heading_only = true;
@@ -78,6 +113,7 @@ TEST_CASE("turns of a gyro are summed against those of the inputs, run by run") 
     CHECK(turns.product / turns.square == doctest::Approx(turns.run == 0 ? 0.75 : -0.75));
   }
   CHECK(evidence.windows().empty());
+  CHECK_FALSE(evidence.recent());
 }
 
 }  // namespace

@@ -248,7 +248,6 @@ class MotionLearner(Measurements, RememberedSurfaces):
             return model_of(self._remembered(made.content, learned), log, ()), judgement
         sensors = Sensors(self._wheels, "", self._gyro_alone)
         found = contradictions_in(self._seen(model.evidence))
-        found = contradictions_in(self._seen(model.evidence))
         facts = LogFacts((*found, *self._of_log), (), self._input, self._positions, self._clocks_compared)
         judged = judge(to_judge(learned, self._settings, sensors, positions=self._positions), facts)
         slowest, fastest, right, left = model.range
@@ -277,6 +276,11 @@ class MotionLearner(Measurements, RememberedSurfaces):
     def contradictions(self) -> tuple[Contradiction, ...]:
         """Return what shows that poses and inputs cannot both be right, of all that was pushed."""
         return contradictions_in(self._seen(self._core.model().evidence))
+
+    @property
+    def compared(self) -> int:
+        """How much of the driving was looked at for contradictions: it grows while the robot is driven."""
+        return self._core.compared
 
     def not_shown_yet(self) -> str:
         """Say what is missing until contradictions would have shown themselves; empty where nothing is."""

@@ -17,6 +17,7 @@ from slipwise.models import Model
 
 OFTEN, SELDOM = 2.0, 5.0  # s between judgements: a long drive has many predictions to judge
 MANY = 100  # segments, from which on judgements are seldom
+AGREE_AGAIN = 80  # stretches of 1.5 s of driving without a contradiction end it: two minutes
 AFTER_CHANGE = 60.0  # s after a change of terrain in which judgements are frequent all the same
 
 
@@ -40,9 +41,11 @@ class Learning:
         self.segments = 0
         self._said = said
         self._new = False  # whether something was learned since the last judgement
+        self._compared = learner.compared  # how much of the driving was looked at for contradictions by then
         self._judged = -math.inf  # s
         self._changed = -math.inf  # s
         self._shown = False  # whether contradictions would have shown themselves by now
+        self._contradicted_at = 0  # the same at the last judgement that found a contradiction
         self.contradicted = ""  # why what was learned must not be used; empty where nothing speaks against it
 
     def take(self, events: list[Event]) -> bool:
@@ -68,10 +71,13 @@ class Learning:
         seldom = self.segments > MANY and t > self._changed + AFTER_CHANGE
         if t < self._judged:  # the clock was set back
             self._judged = -math.inf
-        due = self._new and t >= self._judged + (SELDOM if seldom else OFTEN)
+        compared = self.learner.compared  # of a localiser that is lost nothing may be learned
+        known = bool(self.segments) or self.valid is not None
+        new = self._new or (known and compared != self._compared)
+        due = new and t >= self._judged + (SELDOM if seldom else OFTEN)
         if not (due or (last and self.segments)):
             return False
-        self._new, self._judged = False, t
+        self._new, self._judged, self._compared = False, t, compared
         before = self.validity.whole
         try:
             self.model, self.judgement = self.learner.judged_model(limits=False)
@@ -87,8 +93,19 @@ class Learning:
             self._shown = not waits
             found = self.model.content.verdict.contradictions
             self.validity.take(self.model, self.judgement, waits)
-        self._follow(t, "; ".join(found), before)
+        self._follow(t, self._standing("; ".join(found)), before)
         return True
+
+    def _standing(self, found: str) -> str:
+        """Return why nothing may be used: a contradiction stands until two minutes of driving show none."""
+        if found:
+            self._contradicted_at = self._compared
+        elif self.contradicted and self._compared < self._contradicted_at + AGREE_AGAIN:
+            self.validity.contradicted(
+                f"poses and inputs contradicted each other lately: {self.contradicted}"
+            )
+            return self.contradicted
+        return found
 
     def _follow(self, t: float, contradicted: str, before: Validity) -> None:
         """Keep what is valid; what was valid before a contradiction was learned of the same measurements."""

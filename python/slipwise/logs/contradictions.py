@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from slipwise import _core
 from slipwise.logs.command_timeout import REPEAT, silent_commands, stops_after
@@ -30,7 +30,7 @@ _LONG = 4  # times as many windows suffice of a robot that hardly turns, or only
 class Seen:
     """What is looked at for contradictions."""
 
-    evidence: _core.MotionEvidence
+    evidence: _core.MotionEvidence | _core.RecentEvidence
     runs: Sequence[str]  # names, by the evidence's number of the run
     input_name: str  # "command" or "wheel", the input that is learned from
     positions: bool  # headings are courses, which tell nothing of a heading
@@ -47,7 +47,29 @@ class Seen:
 
 
 def contradictions_in(seen: Seen) -> tuple[Contradiction, ...]:
-    """Return what shows that poses and inputs cannot both be right."""
+    """Return what shows that poses and inputs cannot both be right, in all that was driven or lately.
+
+    An hour of good driving hides a localiser that freezes or a sign that flips: the last two minutes of
+    driving are judged by the same rules.
+    """
+    found = _contradictions_in_part(seen)
+    recent = seen.evidence.recent if isinstance(seen.evidence, _core.MotionEvidence) else None
+    if recent is None or any(each.spoils for each in found):
+        return found
+    lately = _contradictions_in_part(replace(seen, evidence=recent))
+    spoilt = tuple(_lately(each) for each in lately if each.spoils)
+    kinds = {each.kind for each in spoilt}
+    return (*spoilt, *(each for each in found if each.kind not in kinds))
+
+
+def _lately(found: Contradiction) -> Contradiction:
+    """Say that it is so of the last minutes alone."""
+    advice = (*found.advice, "All before agrees: --end leaves out what followed, where it is a log.")
+    return replace(found, sentence=f"in the last two minutes of driving, {found.sentence}", advice=advice)
+
+
+def _contradictions_in_part(seen: Seen) -> tuple[Contradiction, ...]:
+    """Return what the rules say of one part of what was driven."""
     wrong = _wrong_units(seen)
     if wrong is not None:  # what else looks wrong comes from it
         return (wrong,)

@@ -11,6 +11,8 @@ from slipwise import _core
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.motion_windows import wrapped
 
+_Evidence = _core.MotionEvidence | _core.RecentEvidence
+
 _MOVING = 0.05  # [m] by the wheels
 _ENOUGH = 10  # pairs of poses
 _APART = 0.3  # [s] the clocks of poses and wheels are tried apart by at most this,
@@ -40,7 +42,7 @@ class _Difference:
         )
 
 
-def repeated_wheels(evidence: _core.MotionEvidence) -> Contradiction | None:
+def repeated_wheels(evidence: _Evidence) -> Contradiction | None:
     """Say whether the poses are the wheels' own path.
 
     Simulators whose robots slip have poses of their own, however exact they are.
@@ -62,7 +64,7 @@ def repeated_wheels(evidence: _core.MotionEvidence) -> Contradiction | None:
     )
 
 
-def _least(evidence: _core.MotionEvidence) -> _Difference | None:
+def _least(evidence: _Evidence) -> _Difference | None:
     """The difference at the offset between the clocks at which it is least."""
     middle, reach, least = 0.0, _APART, None
     for step in _STEPS:
@@ -75,7 +77,7 @@ def _least(evidence: _core.MotionEvidence) -> _Difference | None:
     return least
 
 
-def _at(evidence: _core.MotionEvidence, offset: float) -> _Difference | None:
+def _at(evidence: _Evidence, offset: float) -> _Difference | None:
     rows = evidence.probed_motions(offset)
     poses, wheels = rows[:, :3], rows[:, 3:]
     distance = np.hypot(wheels[:, 0], wheels[:, 1])

@@ -23,7 +23,8 @@ _FASTEST = 3.0  # the same; nothing pushes a robot so fast
 _NO_TURN = 0.01  # of the inputs' turns
 _ENOUGH_TURN = 3.0  # [rad] in total, by the inputs
 _JUMP = 0.9  # mean length of the two courses before and after a jump
-_LEAST_PART = 0.2  # of the windows, before and after a jump
+_LEAST_PART = 0.15  # of the windows, before and after a jump
+_CERTAIN = 3.0  # standard errors of the angle between the two courses, beyond `_TURNED`
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ def lost_heading(windows: MotionWindows, driven: DrivenWindows, words: InputWord
     jump = _jump(driven)
     if jump is not None:
         return jump
-    if abs(complex((driven.course**2).mean())) < _AXES_DISAGREE:
+    if not _agree(driven) and abs(complex((driven.course**2).mean())) < _AXES_DISAGREE:
         return Contradiction(
             "lost-heading",
             "the heading of the poses does not go with the course that they take",
@@ -129,7 +130,8 @@ def _jump(driven: DrivenWindows) -> Contradiction | None:
         return None
     k = least - 1 + int(np.argmax(lengths[least - 1 : count - least]))
     angle = float(np.angle((before[-1] - before[k]) * np.conj(before[k])))
-    if lengths[k] < _JUMP * count or abs(angle) < _TURNED:
+    least_angle = _TURNED + _CERTAIN * _error(lengths[k] / count, k + 1, count)
+    if lengths[k] < _JUMP * count or abs(angle) < least_angle:
         return None
     return Contradiction(
         "heading-jump",
@@ -137,6 +139,15 @@ def _jump(driven: DrivenWindows) -> Contradiction | None:
         f"t = {driven.start[k]:.1f} s and {driven.start[k + 1]:.1f} s",
         ("Check the source of the heading, and learn from before and after it as two logs.",),
     )
+
+
+def _error(length: float, before: int, count: int) -> float:
+    """Return the standard error of the angle between two mean courses [rad].
+
+    One is of the windows `before`, the other of the rest; they scatter so that means are of this length.
+    """
+    scatter = math.sqrt(-2.0 * math.log(min(length, 1.0)))
+    return scatter * math.sqrt(1.0 / before + 1.0 / (count - before))
 
 
 def _agree(driven: DrivenWindows) -> bool:

@@ -146,6 +146,16 @@ def _learner() -> _core.MotionLearner:
     return learner
 
 
+def _recent_evidence() -> _core.RecentEvidence | None:
+    """Of a drive that is longer than what is recent."""
+    t = np.arange(0.0, 200.0, 0.5)
+    zero = np.zeros_like(t)
+    driven = np.column_stack((t, zero + 0.5, zero, zero))
+    poses = np.column_stack((t, 0.5 * t, zero, zero, zero))
+    run = _core.Recording(driven, np.empty((0, 4)), np.empty((0, 3)), poses)
+    return _core.motion_evidence(_core.StreamSettings(), [run]).recent
+
+
 def _recording() -> _core.Recording:
     return _core.Recording(
         _rows(), _rows(), np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]]), np.column_stack((_rows(), T * 0))
@@ -188,6 +198,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "Basis": lambda: _core.named_basis("edd-2"),
     "ActuatorFilter": _chain_learner,
     "MotionEvidence": lambda: _core.motion_evidence(_core.StreamSettings(), []),
+    "RecentEvidence": _recent_evidence,
     "ForceFrame": lambda: _core.ForceFrame.Body,
     "DisturbanceFilter": lambda: _core.DisturbanceFilter(_law()),
     "CommandLimits": _limits,

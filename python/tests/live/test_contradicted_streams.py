@@ -14,8 +14,10 @@ from contradictory_logs import (
     SKID_STEERED,
     circular,
     scaled,
+    since,
     sound_log,
     stopped,
+    teleported,
     turned,
     with_poses,
     with_runs,
@@ -43,13 +45,6 @@ def with_inputs(log: Log, change: Callable[[Inputs], Inputs]) -> Log:
         return replace(run, commands=change(run.commands), wheels=change(run.wheels))
 
     return with_runs(log, changed)
-
-
-def teleported(p: Poses) -> Poses:
-    """Every third pose is somewhere else for a while, such as of a localiser that finds itself anew."""
-    rng = np.random.default_rng(2)
-    away = np.repeat(rng.uniform(-20.0, 20.0, (len(p) // 2 + 1, 2)), 2, axis=0)[: len(p)]
-    return replace(p, x=p.x + away[:, 0], y=p.y + away[:, 1])
 
 
 def random_yaw(p: Poses) -> Poses:
@@ -178,6 +173,31 @@ def test_what_was_handed_on_is_withdrawn_with_the_start_values_and_a_word_why(tm
     last = [o.text for o in transport.outputs if isinstance(o, ModelText)][-1]
     assert not parse_model(last, where="").content.verdict.good
     assert built.learning.valid is None
+
+
+LONG, LATE = 900.0, 600.0  # s
+LATER: dict[str, Callable[[Log], Log]] = {
+    "frozen localiser": lambda log: stopped(log, LATE),
+    "v flipped": STREAMS["v flipped"],
+    "omega flipped": STREAMS["omega flipped"],
+    "poses turned by 90": STREAMS["poses turned by 90"],
+    "y mirrored": STREAMS["y mirrored"],
+    "teleports": STREAMS["teleports"],
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LATER)
+def test_what_a_long_good_drive_handed_on_is_withdrawn_within_two_minutes_and_stays_so(
+    name: str, tmp_path: Path
+) -> None:
+    log = sound_log(replace(DRIVE, seconds=LONG))
+    built, transport = lived(since(log, LATER[name], LATE), tmp_path)
+    assert faults_of(built, transport, tmp_path) == []
+    withdrawn = [t for t, text in built.said.log() if "are withdrawn" in text]
+    assert len(withdrawn) == 1
+    assert LATE < withdrawn[0] < LATE + 120.0
+    assert not any(text.startswith("written to ") for t, text in built.said.log() if t > withdrawn[0])
 
 
 def test_a_start_model_is_what_is_there_again_after_a_contradiction(tmp_path: Path) -> None:

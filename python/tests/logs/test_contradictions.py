@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,9 +12,12 @@ import pytest
 from contradictory_logs import (
     SKID_STEERED,
     circular,
+    dead_reckoned,
     scaled,
+    since,
     sound_log,
     stopped,
+    teleported,
     turned,
     with_poses,
 )
@@ -22,6 +26,7 @@ from sample_logs import Drive, steady_run
 from slipwise import _core
 from slipwise.logs import Log, LogOptions, Poses, open_log
 from slipwise.logs.contradictions import contradictions
+from slipwise.logs.time_span import cut_to_span
 
 HALF = 30.0  # s
 SOUND = sound_log()
@@ -119,9 +124,67 @@ def test_a_log_without_the_input_or_without_motion_has_none() -> None:
     assert contradictions(replace(still, runs=(replace(still.runs[0], wheels=None),)), "wheel") == ()
 
 
+LATE = 1000.0  # s
+LONG = sound_log(replace(SKID_STEERED, seconds=1100.0))
+
+
+LATELY: dict[str, tuple[Callable[[Log], Log], str, str]] = {  # what changes, input, kind
+    "stuck": (lambda log: stopped(log, LATE, 0.01), "wheel", "does-not-move"),
+    "rad/s": (lambda log: scaled(log, "wheels", 1 / 0.15), "wheel", "unlikely-speed"),
+    "flipped": (lambda log: scaled(log, "wheels", -1.0), "wheel", "backward-poses"),
+    "no yaw": (lambda log: with_poses(log, lambda p: replace(p, yaw=0.0 * p.yaw)), "wheel", "lost-heading"),
+    "mirrored": (
+        lambda log: with_poses(log, lambda p: replace(p, y=-p.y, yaw=-p.yaw)),
+        "wheel",
+        "implausible",
+    ),
+    "teleports": (lambda log: with_poses(log, teleported), "wheel", "unreachable-poses"),
+}
+
+
+@pytest.mark.parametrize("name", LATELY)
+def test_what_begins_after_a_long_drive_is_found_in_the_last_two_minutes(name: str) -> None:
+    change, input_name, kind = LATELY[name]
+    found = contradictions(since(LONG, change, LATE), input_name)
+    assert found[0].kind == kind
+    assert found[0].spoils
+    assert found[0].sentence.startswith("in the last two minutes of driving, ")
+    assert any("--end" in text for text in found[0].advice)
+
+
+def test_a_long_sound_drive_has_no_contradiction() -> None:
+    assert contradictions(LONG, "wheel") == ()
+    assert contradictions(LONG, "command") == ()
+
+
+def test_poses_that_begin_to_repeat_the_wheels_are_found_in_the_last_two_minutes() -> None:
+    (run,) = LONG.runs
+    assert run.wheels is not None
+    repeated = replace(run, poses=joined_poses(run.poses, dead_reckoned(run.wheels), LATE))
+    (found,) = contradictions(replace(LONG, runs=(repeated,)), "wheel")
+    assert (found.kind, found.spoils) == ("repeated-wheels", True)
+
+
+def joined_poses(first: Poses, then: Poses, t: float) -> Poses:
+    """One source of poses until a time [s], another from then on, in a frame of its own."""
+    early, late = first.t < t, then.t >= t
+    columns = {
+        name: np.concatenate((getattr(first, name)[early], getattr(then, name)[late]))
+        for name in ("t", "x", "y", "yaw")
+    }
+    frame = np.concatenate((first.frame[early], then.frame[late] + 1))
+    return Poses(**columns, frame=frame)
+
+
 @pytest.mark.slow
 def test_no_real_robot_contradicts_its_inputs(real_log_dir: Path) -> None:
+    """Neither in the whole log nor in what had come until some time in it."""
+    found = []
     for path in sorted(real_log_dir.glob("*/*.csv.gz")):
         log = open_log(path, options=LogOptions(wheelbase=0.32 if path.parent.name == "f1tenth" else None))
-        for name in ("command", "wheel"):
-            assert contradictions(log, name) == (), (path.name, name)
+        last = max(run.span[1] for run in log.runs) - min(run.span[0] for run in log.runs)
+        for end in (*np.arange(40.0, last, 20.0), last + 1.0):
+            part = cut_to_span(log, None, float(end))
+            for name in ("command", "wheel"):
+                found += [(path.name, end, name, each.sentence) for each in contradictions(part, name)]
+    assert found == []

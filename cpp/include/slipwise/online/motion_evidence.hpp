@@ -31,6 +31,15 @@ struct GateCounts {
   std::size_t jumps = 0;
 };
 
+/// What poses and inputs did in the last two minutes of driving, of turning for a gyro.
+struct RecentEvidence {
+  std::deque<MotionWindow> measured_windows;
+  std::deque<MotionWindow> windows;
+  std::vector<WheelProbe> probes;
+  std::deque<GyroTurns> gyro_turns;
+  GateCounts counts;
+};
+
 /// Takes what a stream uses, in the order of time: poses before and after the gate, inputs known until then, a gyro.
 /// Of windows it keeps the last hundred minutes.
 class MotionEvidence {
@@ -61,12 +70,16 @@ class MotionEvidence {
   const std::vector<WheelProbe>& probes() const { return probes_.probes(); }
   const std::deque<GyroTurns>& gyro_turns() const { return gyro_turns_; }
   const GateCounts& counts() const { return counts_; }
+  /// What an hour of good driving hides; nothing where all that was driven is recent.
+  std::optional<RecentEvidence> recent() const;
+  /// How much was compared so far: it grows while inputs drive the robot.
+  std::size_t compared() const { return measured_.driven() + gyro_seconds_; }
 
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.run_, self.run_begins_, self.measured_, self.accepted_, self.probes_, self.yaw_rates_, self.second_,
-      self.gyro_turns_, self.counts_);
+      self.gyro_turns_, self.last_seconds_, self.gyro_seconds_, self.counts_, self.counts_before_, self.gated_);
   }
 
  private:
@@ -82,7 +95,11 @@ class MotionEvidence {
   std::deque<YawRate> yaw_rates_;  ///< since the second that is compared next
   std::optional<double> second_;   ///< where that begins [s]
   std::deque<GyroTurns> gyro_turns_;
+  std::deque<GyroTurns> last_seconds_;  ///< of turning, each alone
+  std::size_t gyro_seconds_ = 0;        ///< of turning, ever
   GateCounts counts_;
+  GateCounts counts_before_;      ///< the window that is measured now
+  std::deque<GateCounts> gated_;  ///< in each of the recent windows
 };
 
 }  // namespace slipwise

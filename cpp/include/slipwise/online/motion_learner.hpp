@@ -192,6 +192,8 @@ class MotionLearner {
   /// \throws std::invalid_argument, saying what to do, when these are not the bytes that this version saved.
   static MotionLearner load(std::string_view saved);
 
+  /// How much of the driving was looked at for contradictions; it grows whether anything can be learned or not.
+  std::size_t compared() const { return stream_.evidence().compared(); }
   /// Stamp of the newest measurement of the run [s]; minus infinity before the first.
   double newest() const { return clock_.stamp(stream_.newest()); }
 

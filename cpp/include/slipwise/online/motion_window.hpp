@@ -32,23 +32,28 @@ struct NumberedRun {
   double origin = 0.0;     ///< [s]
 };
 
-/// Cuts the poses of one frame after the other into windows, and keeps the last of those in which inputs are known.
+/// Cuts the poses of one frame after the other into windows, and keeps the last of those in which inputs are known, and
+/// beside them the last two minutes of driving.
 class WindowCutter {
  public:
   /// Another run begins.
   void start_run();
   /// Takes a pose; inputs are known until its stamp. A position heads along the path, turned about where the robot
-  /// drives backward.
-  void push(const NumberedRun& run, const MeasuredPose& pose, const InputBuffer& commands, const InputBuffer& wheels);
+  /// drives backward. Returns whether a window begins with it.
+  bool push(const NumberedRun& run, const MeasuredPose& pose, const InputBuffer& commands, const InputBuffer& wheels);
   const std::deque<MotionWindow>& windows() const { return windows_; }
+  /// The last two minutes of windows in which inputs drive the robot.
+  const std::deque<MotionWindow>& recent() const { return recent_; }
+  /// How many windows there ever were in which inputs drove the robot.
+  std::size_t driven() const { return driven_; }
   /// \throws std::invalid_argument when what was loaded cannot be.
   void check_loaded() const;
 
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.windows_, self.run_began_, self.frame_began_, self.first_, self.last_, self.slot_, self.turn_,
-      self.turn_degrees_, self.course_from_, self.course_);
+    a(self.windows_, self.recent_, self.driven_, self.run_began_, self.frame_began_, self.first_, self.last_,
+      self.slot_, self.turn_, self.turn_degrees_, self.course_from_, self.course_);
   }
 
  private:
@@ -60,9 +65,12 @@ class WindowCutter {
     long frame;
   };
   void close(const NumberedRun& run, const Seen& last, const InputBuffer& commands, const InputBuffer& wheels);
+  void keep_recent(const MotionWindow& window);
   double course(const Seen& position, const InputBuffer& inputs);
 
   std::deque<MotionWindow> windows_;
+  std::deque<MotionWindow> recent_;  ///< of driving
+  std::size_t driven_ = 0;           ///< windows ever
   std::optional<double> run_began_;  ///< [s]
   double frame_began_ = 0.0;         ///< [s]
   std::optional<Seen> first_;        ///< pose of the window that is open
