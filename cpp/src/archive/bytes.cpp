@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "slipwise/archive/reader.hpp"
+#include "slipwise/archive/version.hpp"
 #include "slipwise/archive/writer.hpp"
 
 namespace slipwise::archive {
@@ -40,7 +41,7 @@ std::uint64_t checksum(std::string_view bytes) {
 
 std::string sealed(std::string_view body) {
   Writer header;
-  header(std::string(SLIPWISE_VERSION), static_cast<std::uint64_t>(body.size()));
+  header(std::string(version()), static_cast<std::uint64_t>(body.size()));
   std::string blob = std::string(kMagic) + header.bytes();
   blob += body;
   Writer end;
@@ -59,8 +60,8 @@ std::string_view opened(std::string_view blob) {
   std::string saved_by;
   std::uint64_t length = 0;
   reader(saved_by, length);
-  if (saved_by != SLIPWISE_VERSION) {
-    refuse("of slipwise " + saved_by + ", and this is slipwise " + SLIPWISE_VERSION);
+  if (saved_by != version()) {
+    refuse("of slipwise " + saved_by + ", and this is slipwise " + version());
   }
   if (reader.remaining() < kChecksumBytes || length > reader.remaining() - kChecksumBytes) {
     refuse("truncated");
