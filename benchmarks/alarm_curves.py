@@ -29,10 +29,10 @@ from terrain_change import NOISES
 import slipwise
 from slipwise import _core
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.estimators import learned_parts
 from slipwise.calibration.prepared_run import WindowSet, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log
+from slipwise_thesis.estimators import learned_parts
 
 Floats = NDArray[np.float64]
 

@@ -18,7 +18,8 @@ os.environ.setdefault(
 import numpy as np
 
 from slipwise import _core
-from slipwise.surfaces import (
+from slipwise_thesis import _thesis
+from slipwise_thesis.surfaces import (
     BayesianOptions,
     BayesianSurface,
     GaussianProcessOptions,
@@ -46,7 +47,7 @@ def draw(count: int, seed: int) -> SlipExamples:
     """Draw segments of a known slip law, with a term that no basis holds and noise that grows with speed."""
     random = np.random.default_rng(seed)
     v, omega = random.uniform(0.3, 2.5, count), random.uniform(-1.0, 1.0, count)
-    slip = _core.feature_rows(BASIS, v, omega)
+    slip = _thesis.feature_rows(BASIS, v, omega)
     parts = (slice(0, 3), slice(3, 6), slice(6, 10))
     law = np.column_stack([slip[:, part] @ ALPHA[part] for part in parts])
     law[:, 0] -= 0.05 * np.tanh(4.0 * np.abs(omega) - 2.0)  # the tyres let go

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise_thesis import _thesis
 
 Floats = NDArray[np.float64]
 Predictor = Callable[["Table", NDArray[np.bool_]], Floats]  # [N, 3] for all rows, from the rows of the mask
@@ -75,11 +76,11 @@ def features(table: Table, names: list[str]) -> Floats:
     )
 
 
-def regression(x: Floats, y: Floats, std: float, noise: tuple[float, float]) -> _core.BayesianRegression:
+def regression(x: Floats, y: Floats, std: float, noise: tuple[float, float]) -> _thesis.BayesianRegression:
     """Return a regression of y [N] on x [N, d]."""
-    found = _core.BayesianRegression(np.full(x.shape[1], std), *noise)
+    found = _thesis.BayesianRegression(np.full(x.shape[1], std), *noise)
     for row, output in zip(x, y, strict=True):
-        found.add(_core.RegressionExample(row, float(output), 1.0))
+        found.add(_thesis.RegressionExample(row, float(output), 1.0))
     return found
 
 
@@ -89,7 +90,7 @@ def slip_left_out(table: Table, side: int) -> tuple[Floats, Floats]:
     learned = regression(x, y, SLIP_STD, NOISE)
     mean, std = np.empty(len(y)), np.empty(len(y))
     for k in range(len(y)):
-        example = _core.RegressionExample(x[k], float(y[k]), 1.0)
+        example = _thesis.RegressionExample(x[k], float(y[k]), 1.0)
         learned.remove(example)
         (mean[k],), (std[k],) = learned.predict_rows(x[k : k + 1])
         learned.add(example)
@@ -111,9 +112,9 @@ def learn_turn(table: Table, rows: NDArray[np.bool_], start: Floats, rounds: int
         x = np.column_stack((-sideways * w / square, forward * w / square))
         error = wrapped(measured - np.arctan2(sideways, forward))
         spread = np.sqrt(1.0 + (error / ANGLE_STD) ** 2)
-        learned = _core.BayesianRegression(np.full(2, TURN_STD), ANGLE_STD, np.inf)
+        learned = _thesis.BayesianRegression(np.full(2, TURN_STD), ANGLE_STD, np.inf)
         for row, output, relative in zip(x, error + x @ turn, spread, strict=True):
-            learned.add(_core.RegressionExample(row, float(output), float(relative)))
+            learned.add(_thesis.RegressionExample(row, float(output), float(relative)))
         turn = np.asarray(learned.mean)
     return turn
 

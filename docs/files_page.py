@@ -16,6 +16,9 @@ TOPS = (
     ("cpp/include/slipwise", "cpp/src"),
     ("python/bindings",),
     ("python/slipwise",),
+    ("packages/slipwise-sim/slipwise_sim",),
+    ("packages/slipwise-thesis/cpp",),
+    ("packages/slipwise-thesis/slipwise_thesis",),
     ("tools",),
     ("examples",),
 )

@@ -22,10 +22,12 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("filter", "planning"),
     ("disturbance", "identify", "dynamics"),
     ("hypotheses",),
-    ("online", "thesis"),
+    ("online",),
+    ("thesis",),  # the package slipwise-thesis
 )
 LEVEL = {folder: level for level, row in enumerate(LAYERS) for folder in row}
 
+PARTS = ("cpp", "packages/slipwise-thesis/cpp")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 OWN = "slipwise/"
 SOURCES = (".cpp", ".hpp", ".cu")
@@ -42,8 +44,8 @@ class Include:
 
 
 def includes(root: Path) -> Iterator[Include]:
-    """Yield every include of the headers and sources of the core below `root`."""
-    for folder in ("cpp/include/slipwise", "cpp/src"):
+    """Yield every include of the headers and sources of the core, and of packages beside it, below `root`."""
+    for folder in (f"{part}/{kind}" for part in PARTS for kind in ("include/slipwise", "src")):
         for path in sorted(p for p in (root / folder).rglob("*") if p.suffix in SOURCES):
             for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
                 if found := INCLUDE.match(line):
@@ -52,7 +54,7 @@ def includes(root: Path) -> Iterator[Include]:
 
 def layer_of(path: str) -> str:
     """Return the folder of the core that the file or the included header `path` is in, "" outside of one."""
-    parts = re.sub(r"^(cpp/include/slipwise/|cpp/src/|slipwise/)", "", path).split("/")
+    parts = re.sub(r"^(.*cpp/include/slipwise/|.*cpp/src/|slipwise/)", "", path).split("/")
     return parts[0] if len(parts) > 1 else ""
 
 
@@ -87,8 +89,9 @@ def foreign_fault(target: str) -> str:
 
 def order_fault(include: Include, root: Path) -> str:
     """Say that a source does not begin with its own header, where clang-tidy reads that header by itself."""
-    own = re.sub(r"^cpp/src/(.+)\.(cpp|cu)$", rf"{OWN}\1.hpp", include.path)
-    if own in (include.path, include.target) or not (root / "cpp/include" / own).exists():
+    part, _, source = include.path.rpartition("/src/")
+    own = re.sub(r"^(.+)\.(cpp|cu)$", rf"{OWN}\1.hpp", source)
+    if not source or own == include.target or not (root / part / "include" / own).exists():
         return ""
     return f"includes {include.target} before its own header, {own}"
 
@@ -111,8 +114,9 @@ def check(root: Path) -> list[str]:
         first, before = include.path != before, include.path
         found = (layer_fault(include), order_fault(include, root) if first else "")
         faults.extend(f"{include.path}:{include.line}: {fault}" for fault in found if fault)
-        if include.path.startswith("cpp/include/"):
-            graph.setdefault(include.path.removeprefix("cpp/include/"), set()).add(include.target)
+        _, header, name = include.path.rpartition("cpp/include/")
+        if header:
+            graph.setdefault(name, set()).add(include.target)
     return faults + cycles(graph)
 
 

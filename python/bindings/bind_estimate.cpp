@@ -14,12 +14,9 @@
 #include "slipwise/filter/iekf.hpp"
 #include "slipwise/filter/observability.hpp"
 #include "slipwise/filter/predictive_score.hpp"
+#include "slipwise/filter/prior.hpp"
 #include "slipwise/filter/weighting.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
-#include "slipwise/thesis/noise_fit.hpp"
-#include "slipwise/thesis/sliding_mode_observer.hpp"
-#include "slipwise/thesis/slip_rate_fit.hpp"
-#include "slipwise/thesis/slip_ratio_filter.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -154,46 +151,6 @@ void bind_results(nb::module_& m) {
       .def_ro("weakest_ratio", &Observability::weakest_ratio);
 }
 
-void bind_slip_ratios(nb::module_& m) {
-  m.attr("NOMINAL_WHEEL_SEPARATION") = kNominalWheelSeparation;
-  m.def("slip_ratio_model", &slip_ratio_model, "full-linear-6 behind an identity actuator.");
-  nb::class_<SlipRatioFilterSettings>(m, "SlipRatioFilterSettings")
-      .def(nb::init<>())
-      .def_rw("wheel_separation", &SlipRatioFilterSettings::wheel_separation)
-      .def_rw("prior_ratio_std", &SlipRatioFilterSettings::prior_ratio_std)
-      .def_rw("prior_angle_std", &SlipRatioFilterSettings::prior_angle_std)
-      .def_rw("walk_ratio", &SlipRatioFilterSettings::walk_ratio)
-      .def_rw("walk_angle", &SlipRatioFilterSettings::walk_angle)
-      .def_rw("huber", &SlipRatioFilterSettings::huber)
-      .def_rw("noise", &SlipRatioFilterSettings::noise);
-  nb::class_<SlipRatioUpdate>(m, "SlipRatioUpdate", "One segment's update of the slip ratios.")
-      .def_ro("innovation", &SlipRatioUpdate::innovation)
-      .def_ro("innovation_covariance", &SlipRatioUpdate::innovation_covariance)
-      .def_ro("nis", &SlipRatioUpdate::nis)
-      .def_ro("weight", &SlipRatioUpdate::weight);
-  nb::class_<SlipRatioFilter>(m, "SlipRatioFilter", "Slip ratios and slip angle by an EKF.")
-      .def(nb::init<const SlipRatioFilterSettings&>(), "settings"_a)
-      .def("learn", &SlipRatioFilter::learn, "wheels"_a, "segment"_a)
-      .def_prop_ro("estimate", &SlipRatioFilter::estimate, "Posterior of (left, right, angle).")
-      .def("linear_estimate", &SlipRatioFilter::linear_estimate, "The same about full-linear-6.");
-  nb::class_<SlidingModeSettings>(m, "SlidingModeSettings")
-      .def(nb::init<>())
-      .def_rw("wheel_separation", &SlidingModeSettings::wheel_separation)
-      .def_rw("ratio_gain", &SlidingModeSettings::ratio_gain)
-      .def_rw("angle_gain", &SlidingModeSettings::angle_gain)
-      .def_rw("side_layer", &SlidingModeSettings::side_layer)
-      .def_rw("drift_layer", &SlidingModeSettings::drift_layer)
-      .def_rw("slowest", &SlidingModeSettings::slowest);
-  nb::class_<SlidingModeUpdate>(m, "SlidingModeUpdate", "What a segment said to the observer.")
-      .def_ro("surface", &SlidingModeUpdate::surface)
-      .def_ro("used", &SlidingModeUpdate::used);
-  nb::class_<SlidingModeObserver>(m, "SlidingModeObserver", "Slip ratios and slip angle by a sliding-mode observer.")
-      .def(nb::init<const SlidingModeSettings&>(), "settings"_a)
-      .def("learn", &SlidingModeObserver::learn, "wheels"_a, "segment"_a)
-      .def_prop_ro("slip", [](const SlidingModeObserver& o) -> Eigen::Vector3d { return o.slip().vector(); })
-      .def("linear_mean", &SlidingModeObserver::linear_mean, "The slip as parameters of full-linear-6.");
-}
-
 BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
                             const std::vector<const InputHistory*>& inputs, const std::vector<Segment>& segments,
                             const std::vector<Eigen::Matrix3d>& noise, const BatchSettings& settings) {
@@ -205,69 +162,11 @@ BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
   return batch_fit(model, prior, data, settings);
 }
 
-void bind_slip_rate_fit(nb::module_& m) {
-  nb::class_<SlipRateSettings>(m, "SlipRateSettings")
-      .def(nb::init<>())
-      .def_rw("length", &SlipRateSettings::length)
-      .def_rw("angular", &SlipRateSettings::angular)
-      .def_rw("noise", &SlipRateSettings::noise)
-      .def_rw("iterations", &SlipRateSettings::iterations)
-      .def_rw("tolerance", &SlipRateSettings::tolerance);
-  nb::class_<SlipRateFit>(m, "SlipRateFit", "Slip rates of a group of steady segments.")
-      .def_ro("slip", &SlipRateFit::slip)
-      .def_ro("covariance", &SlipRateFit::covariance)
-      .def_ro("cost", &SlipRateFit::cost)
-      .def_ro("rms", &SlipRateFit::rms)
-      .def_ro("residuals", &SlipRateFit::residuals)
-      .def_ro("iterations", &SlipRateFit::iterations)
-      .def_ro("status", &SlipRateFit::status);
-  m.def("steady_residuals", &steady_residuals, "segment"_a, "slip"_a, "Measured - predicted charts, [3, N - 1].");
-  m.def(
-      "fit_slip_rates",
-      [](const std::vector<SteadySegment>& segments, const SlipRateSettings& settings) {
-        return fit_slip_rates(segments, settings);
-      },
-      "segments"_a, "settings"_a);
-}
-
-void bind_noise_fit(nb::module_& m) {
-  nb::enum_<ScatterCentre>(m, "ScatterCentre").value("Mean", ScatterCentre::Mean).value("Curve", ScatterCentre::Curve);
-  nb::enum_<NoiseObjective>(m, "NoiseObjective")
-      .value("Thesis", NoiseObjective::Thesis)
-      .value("Fisher", NoiseObjective::Fisher);
-  nb::class_<NoiseGroup>(m, "NoiseGroup", "Residuals [3, K] of segments at common times [K] along one steady twist.")
-      .def(nb::init<BodyTwist, std::vector<double>, std::vector<Eigen::Matrix3Xd>>(), "twist"_a, "times"_a,
-           "residuals"_a);
-  nb::class_<NoiseFitSettings>(m, "NoiseFitSettings")
-      .def(nb::init<>())
-      .def_rw("objective", &NoiseFitSettings::objective)
-      .def_rw("centre", &NoiseFitSettings::centre)
-      .def_rw("pose", &NoiseFitSettings::pose)
-      .def_rw("iterations", &NoiseFitSettings::iterations)
-      .def_rw("tolerance", &NoiseFitSettings::tolerance);
-  nb::class_<NoiseFit>(m, "NoiseFit", "Slip noise and start uncertainty, with the covariance [6, 6] of (psd, start).")
-      .def_ro("noise", &NoiseFit::noise)
-      .def_ro("covariance", &NoiseFit::covariance)
-      .def_ro("scatter_definite", &NoiseFit::scatter_definite)
-      .def_ro("iterations", &NoiseFit::iterations)
-      .def_ro("status", &NoiseFit::status);
-  m.def("scatter_matrix", &scatter_matrix, "group"_a, "centre"_a, "Scatter of the stacked charts, [3K, 3K].");
-  m.def(
-      "fit_noise",
-      [](const std::vector<NoiseGroup>& groups, const NoiseFitSettings& settings) {
-        return fit_noise(groups, settings);
-      },
-      "groups"_a, "settings"_a);
-}
-
 }  // namespace
 
 void bind_estimate(nb::module_& m) {
   bind_settings(m);
   bind_results(m);
-  bind_slip_ratios(m);
-  bind_slip_rate_fit(m);
-  bind_noise_fit(m);
   m.def("iekf_update",
         nb::overload_cast<const MotionModel&, const Estimate&, const InputHistory&, const Segment&,
                           const Eigen::Matrix3d&, const IekfSettings&>(&iekf_update),
@@ -280,6 +179,12 @@ void bind_estimate(nb::module_& m) {
       },
       "model"_a, "v"_a, "omega"_a, "settings"_a,
       "The posterior before any data, at reference speeds v [m/s], omega [rad/s].");
+  m.def(
+      "slip_prior_std",
+      [](const Basis& basis, double v, double omega, double fraction) {
+        return slip_prior_std(basis, {v, omega}, fraction);
+      },
+      "basis"_a, "v"_a, "omega"_a, "fraction"_a, "Prior standard deviation of each slip parameter, [parameters].");
   m.def(
       "prediction_covariance",
       [](const SegmentLinearization& at, const Eigen::MatrixXd& parameters, const MotionNoise& shape,

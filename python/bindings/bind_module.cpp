@@ -19,8 +19,8 @@ NB_MODULE(_core, m) {
   bind_planning(m);
   bind_estimate(m);
   bind_slip_disturbance(m);
-  bind_regression(m);
-  bind_estimators(m);
+  bind_smoother(m);
+  bind_actuator_filter(m);
   bind_dynamics(m);
   bind_limits(m);
   bind_archive(m);

@@ -13,7 +13,6 @@
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
-#include "slipwise/thesis/steady_segment.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -27,50 +26,6 @@ Eigen::MatrixX3d pose_matrix(const std::vector<Pose2>& poses) {
     matrix.row(static_cast<Eigen::Index>(i)) = poses[i].vector();
   }
   return matrix;
-}
-
-std::vector<double> list_of(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
-
-void bind_steady(nb::module_& m) {
-  nb::class_<SteadySegment>(m, "SteadySegment",
-                            "Poses [N, 3] seen from the first, at times [N] from 0 on, under one command.")
-      .def(
-          "__init__",
-          [](SteadySegment* self, const BodyTwist& command, const Eigen::VectorXd& times,
-             const Eigen::MatrixX3d& poses) {
-            check_size(times, poses.rows(), "a path of poses with their times");
-            std::vector<Pose2> list;
-            for (Eigen::Index i = 0; i < poses.rows(); ++i) {
-              list.push_back(Pose2::from_vector(poses.row(i).transpose()));
-            }
-            new (self) SteadySegment{command, list_of(times), std::move(list)};
-          },
-          "command"_a, "times"_a, "poses"_a)
-      .def_ro("command", &SteadySegment::command)
-      .def_ro("times", &SteadySegment::times)
-      .def_prop_ro("poses", [](const SteadySegment& segment) { return pose_matrix(segment.poses); });
-  nb::class_<SteadyNoise>(m, "SteadyNoise",
-                          "Slip noise, start uncertainty P0 and variance of a measured pose, [3] each.")
-      .def(nb::init<Eigen::Vector3d, Eigen::Vector3d, Eigen::Vector3d>(), "psd"_a, "start"_a, "pose"_a)
-      .def_ro("psd", &SteadyNoise::psd)
-      .def_ro("start", &SteadyNoise::start)
-      .def_ro("pose", &SteadyNoise::pose);
-  m.def(
-      "steady_path",
-      [](const BodyTwist& twist, const Eigen::VectorXd& times) {
-        std::vector<Pose2> poses;
-        for (const double t : times) {
-          poses.push_back(steady_pose(twist, t));
-        }
-        return pose_matrix(poses);
-      },
-      "twist"_a, "times"_a, "Where a constant twist leads, [K, 3].");
-  m.def(
-      "steady_covariance",
-      [](const BodyTwist& twist, const Eigen::VectorXd& times, const SteadyNoise& noise) {
-        return steady_covariance(twist, list_of(times), noise);
-      },
-      "twist"_a, "times"_a, "noise"_a, "Covariance of the stacked charts at positive times [K], [3K, 3K].");
 }
 
 void bind_ground(nb::module_& m) {
@@ -240,7 +195,6 @@ void bind_segment(nb::module_& m) {
         return segment_noise(path, measured, noise, Eigen::Vector3d::Ones());
       },
       "path"_a, "measured"_a, "noise"_a, "Covariance of a measured segment: of slip, and of what was measured.");
-  bind_steady(m);
 }
 
 }  // namespace slipwise::bindings

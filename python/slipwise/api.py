@@ -56,8 +56,9 @@ def calibrate(  # noqa: PLR0913 - options, most of them short for a setting
         basis: "auto" or a named basis; short for `settings` with that basis.
         input: "command" or "wheel"; by default commands where the log has them.
         settings: what to learn and how.
-        estimator: "average", "iekf", "delayed-state", "ekf-thesis", "gradient-descent", or "batch", which
-            fits all windows at once, off-line; short for `settings` with that estimator.
+        estimator: "average", or of the package slipwise-thesis "iekf", "delayed-state", "ekf-thesis",
+            "gradient-descent", or "batch", which fits all windows at once, off-line; short for
+            `settings` with that estimator.
         smooth: also say what the slip was during each window, given the whole log.
 
     Raises:

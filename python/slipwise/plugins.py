@@ -10,13 +10,27 @@ from slipwise.errors import SlipwiseError
 
 COMMANDS = "slipwise.commands"  # modules with a function of the entry's name and a SUMMARY
 ROBOTS = "slipwise.robots"  # transports of `slipwise live` that simulate a robot
+ESTIMATORS = "slipwise.estimators"  # of type calibration.estimator_run.EstimatorInfo
+METHODS = "slipwise.methods"  # of `slipwise evaluate`, of type evaluation.methods.MethodInfo
 
-#: Packages of this repository, by what they add.
+#: Packages of this repository in the order in which they need each other, and what each adds.
+_IN_ORDER = ("slipwise-sim", "slipwise-thesis")
 _PACKAGES = {
     (COMMANDS, "demo"): "slipwise-sim",
     (COMMANDS, "simulate"): "slipwise-sim",
     (COMMANDS, "reproduce"): "slipwise-thesis",
     (ROBOTS, "demo"): "slipwise-sim",
+    **{
+        (ESTIMATORS, name): "slipwise-thesis"
+        for name in ("gradient-descent", "ekf-thesis", "iekf", "delayed-state", "batch")
+    },
+    **{
+        (METHODS, name): "slipwise-thesis"
+        for name in (
+            *("slip-ratio-ekf", "slip-ratio-smo"),
+            *("surface-least-squares", "surface-gaussian-process", "surface-bayesian"),
+        )
+    },
 }
 
 
@@ -42,7 +56,8 @@ def refuse_missing(group: str, name: str) -> None:
     """Raise SlipwiseError where a package of this repository would add `name`, and is not installed."""
     package = _PACKAGES.get((group, name))
     if package is not None and name not in added(group):
+        folders = [f"./packages/{each}" for each in _IN_ORDER[: _IN_ORDER.index(package) + 1]]
         raise SlipwiseError(
             f"'{name}' comes with the package {package}, which is not installed",
-            advice=f"in a clone of slipwise: pip install ./packages/{package}",
+            advice=" ".join(["in a clone of slipwise: pip install .", *folders]),
         )

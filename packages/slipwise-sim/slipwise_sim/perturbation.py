@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,13 +13,34 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs
-from slipwise.surfaces import SlipSurface
 from slipwise_sim.land_tamer import LandTamer
 from slipwise_sim.truth import Truth
 
 Floats = NDArray[np.float64]
 
 _LEFT_OUT = 1e-9  # [s] of rounding between stamps that are meant to be the same
+
+
+class SlipPrediction(Protocol):
+    """Slip rates (m/s, m/s, rad/s) and their standard deviations, [N, 3] each."""
+
+    @property
+    def mean(self) -> Floats:
+        """The mean of each."""
+        ...
+
+    @property
+    def std(self) -> Floats:
+        """The standard deviation of each."""
+        ...
+
+
+class SlipSurface(Protocol):
+    """Slip rates over speed and yaw rate; the surfaces of slipwise-thesis are such."""
+
+    def predict(self, v: Floats, omega: Floats) -> SlipPrediction:
+        """Predict at speeds [N] m/s and yaw rates [N] rad/s."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,6 +9,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.number_text import number_text
+from slipwise_thesis import _thesis
 from slipwise_thesis.fixture import Fixture
 from slipwise_thesis.panel import BASELINE, FITTED, GREY, Floats, Line, Panel, Points
 from slipwise_thesis.thesis_figure import ThesisFigure
@@ -41,7 +42,7 @@ def _miss(step: float, integrator: _core.Integrator) -> float:
     """Distance [m] of the last position from that of the closed form."""
     model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
     path = _core.integrate_segment(model, np.zeros(2), _inputs(step), _segment(), integrator)
-    true = np.array(_core.steady_path(_core.BodyTwist(TWIST[0], 0.0, TWIST[1]), np.array([TIME])))
+    true = np.array(_thesis.steady_path(_core.BodyTwist(TWIST[0], 0.0, TWIST[1]), np.array([TIME])))
     return float(np.hypot(*(path.poses[-1] - true[-1])[:2]))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise import _core
+from slipwise_thesis import _thesis
 from slipwise_thesis.drawn_groups import PSD, START, drawn_group
 from slipwise_thesis.fixture import Fixture
 from slipwise_thesis.grid import Grid
@@ -16,10 +16,12 @@ from slipwise_thesis.thesis_figure import ThesisFigure
 SEGMENTS = 60
 NAMES = ("q lon", "q lat", "q ang", "P0 x", "P0 y", "P0 θ")
 FITS = {
-    ("(4.13)", "mean"): NoiseRules(objective=_core.NoiseObjective.Thesis),
-    ("(4.13)", "curve"): NoiseRules(objective=_core.NoiseObjective.Thesis, centre=_core.ScatterCentre.Curve),
+    ("(4.13)", "mean"): NoiseRules(objective=_thesis.NoiseObjective.Thesis),
+    ("(4.13)", "curve"): NoiseRules(
+        objective=_thesis.NoiseObjective.Thesis, centre=_thesis.ScatterCentre.Curve
+    ),
     ("Fisher", "mean"): NoiseRules(),
-    ("Fisher", "curve"): NoiseRules(centre=_core.ScatterCentre.Curve),
+    ("Fisher", "curve"): NoiseRules(centre=_thesis.ScatterCentre.Curve),
 }
 
 

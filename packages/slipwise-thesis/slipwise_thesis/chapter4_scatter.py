@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from slipwise import _core
 from slipwise.number_text import number_text
+from slipwise_thesis import _thesis
 from slipwise_thesis.chapter4_paths import TERRAINS, circle_group, circle_source, curve_line
 from slipwise_thesis.fixture import DISTURBANCE, STD_XY, STD_YAW, Fixture
 from slipwise_thesis.grid import Grid
@@ -27,9 +27,9 @@ from slipwise_thesis.thesis_figure import ThesisFigure
 TIMES = 6  # at which the scatter is looked at
 POSE = (STD_XY, STD_XY, STD_YAW)
 RULES = {
-    "(4.13) around the mean": NoiseRules(objective=_core.NoiseObjective.Thesis),
+    "(4.13) around the mean": NoiseRules(objective=_thesis.NoiseObjective.Thesis),
     "(4.13) around the curve": NoiseRules(
-        objective=_core.NoiseObjective.Thesis, centre=_core.ScatterCentre.Curve
+        objective=_thesis.NoiseObjective.Thesis, centre=_thesis.ScatterCentre.Curve
     ),
     "Fisher scoring": NoiseRules(),
     "Fisher scoring, pose noise known": NoiseRules(pose_std=POSE),
@@ -42,7 +42,7 @@ THESIS = "(4.13) around the mean"
 class LearnedNoise:
     """One way of learning the noise of a group, and the spread that it predicts."""
 
-    noise: _core.SteadyNoise
+    noise: _thesis.SteadyNoise
     times: Floats  # [K] s
     covariances: Floats  # [K, 3, 3] of the charts at the times, the poses' own noise included if it was known
 
@@ -52,12 +52,12 @@ def learned_noise(group: SteadyGroup, rules: NoiseRules) -> LearnedNoise:
     noise = fit_group_noise([group], rules).noise
     times = float(group.paths[0].times[-1]) * np.arange(1, TIMES + 1) / TIMES
     twist = slipped_twist(group, np.array(fit_slip(group).slip))
-    return LearnedNoise(noise, times, _blocks(np.array(_core.steady_covariance(twist, times, noise))))
+    return LearnedNoise(noise, times, _blocks(np.array(_thesis.steady_covariance(twist, times, noise))))
 
 
 def measured_scatter(group: SteadyGroup) -> Floats:
     """Return the scatter matrices (4.9) at the times, [K, 3, 3]."""
-    stacked = _core.scatter_matrix(scatter_group(group, TIMES), _core.ScatterCentre.Mean)
+    stacked = _thesis.scatter_matrix(scatter_group(group, TIMES), _thesis.ScatterCentre.Mean)
     return _blocks(np.array(stacked))
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise import _core
 from slipwise.number_text import number_text
+from slipwise_thesis import _thesis
 from slipwise_thesis.drawn_groups import NOISE, SLIP, drawn_group
 from slipwise_thesis.fixture import Fixture
 from slipwise_thesis.grid import Grid
@@ -66,6 +66,6 @@ def compared_weights(fixture: Fixture) -> ThesisFigure:
 
 def _errors(groups: list[SteadyGroup], rules: SlipFitRules) -> tuple[np.ndarray, np.ndarray]:
     """Errors and reported standard deviations, [groups, 3] each."""
-    fits: list[_core.SlipRateFit] = [fit_slip(group, rules) for group in groups]
+    fits: list[_thesis.SlipRateFit] = [fit_slip(group, rules) for group in groups]
     error = np.array([np.array(fit.slip) - SLIP for fit in fits])
     return error, np.sqrt(np.array([np.diag(fit.covariance) for fit in fits]))

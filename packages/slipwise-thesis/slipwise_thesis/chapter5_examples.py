@@ -8,18 +8,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from slipwise import _core
-from slipwise.surfaces import SlipExamples, SlipSurface, SurfacePrediction, slip_examples
+from slipwise_thesis import _thesis
 from slipwise_thesis.chapter4_paths import held_paths
 from slipwise_thesis.fixture import CURVATURES, Fixture, MissingLogError
 from slipwise_thesis.panel import Floats
 from slipwise_thesis.steady import PathRules, SlipFitRules, SteadyGroup, SteadyPath, fit_slip
+from slipwise_thesis.surfaces import SlipExamples, SlipSurface, SurfacePrediction, slip_examples
 
 HUSKY_LOG = "husky/tile_deflated_tyres"
 HUSKY_RULES = PathRules(length=3.0, least_distance=0.0, settle=2.5)  # the rest of its holds of 6 s
 HELD_OUT = 5  # one command of so many is not learned
 # Weights of the poses of one segment: slip noise that outweighs the noise of its poses.
-WEIGHTS = _core.SteadyNoise(np.full(3, 1e-3), np.zeros(3), np.full(3, 1e-5))
+WEIGHTS = _thesis.SteadyNoise(np.full(3, 1e-3), np.zeros(3), np.full(3, 1e-5))
 CHANNELS = ("forward", "sideways", "angular")
 UNITS = ("m/s", "m/s", "rad/s")
 NODES = 21  # along each axis of a surface

@@ -8,7 +8,11 @@ from collections.abc import Callable
 import numpy as np
 
 from slipwise import _core
-from slipwise.surfaces import (
+from slipwise_thesis.chapter5_examples import SteadyExamples, all_examples, fitted
+from slipwise_thesis.fixture import Fixture
+from slipwise_thesis.grid import Grid
+from slipwise_thesis.panel import BASELINE, FITTED, INK, MEASURED, Band, Dash, Line, Panel, Points, Series
+from slipwise_thesis.surfaces import (
     BayesianSurface,
     GaussianProcessSurface,
     LeastSquaresSurface,
@@ -16,10 +20,6 @@ from slipwise.surfaces import (
     SurfaceScore,
     score_surface,
 )
-from slipwise_thesis.chapter5_examples import SteadyExamples, all_examples, fitted
-from slipwise_thesis.fixture import Fixture
-from slipwise_thesis.grid import Grid
-from slipwise_thesis.panel import BASELINE, FITTED, INK, MEASURED, Band, Dash, Line, Panel, Points, Series
 from slipwise_thesis.thesis_figure import ThesisFigure
 
 THESIS, ODD_EVEN = _core.named_basis("thesis-15"), _core.named_basis("odd-even-10")

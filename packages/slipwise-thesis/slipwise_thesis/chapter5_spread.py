@@ -6,11 +6,11 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise.number_text import number_text
-from slipwise.surfaces import LeastSquaresSurface, SlipExamples
 from slipwise_thesis.chapter5_examples import CHANNELS, UNITS, all_examples
 from slipwise_thesis.chapter5_surfaces import TERMS
 from slipwise_thesis.fixture import Fixture
 from slipwise_thesis.panel import BASELINE, FITTED, MEASURED, Line, Panel, Points
+from slipwise_thesis.surfaces import LeastSquaresSurface, SlipExamples
 from slipwise_thesis.thesis_figure import ThesisFigure
 
 CURVATURE = 0.25  # [1/m] at which both are drawn

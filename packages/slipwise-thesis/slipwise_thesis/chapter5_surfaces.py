@@ -11,14 +11,6 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.number_text import number_text
-from slipwise.surfaces import (
-    BayesianSurface,
-    GaussianProcessSurface,
-    LeastSquaresSurface,
-    SlipExamples,
-    SlipSurface,
-    SurfacePrediction,
-)
 from slipwise_thesis.chapter5_examples import (
     CHANNELS,
     NODES,
@@ -30,6 +22,14 @@ from slipwise_thesis.chapter5_examples import (
 )
 from slipwise_thesis.fixture import Fixture, MissingLogError
 from slipwise_thesis.panel import INK, Floats, Panel, Points, Surface
+from slipwise_thesis.surfaces import (
+    BayesianSurface,
+    GaussianProcessSurface,
+    LeastSquaresSurface,
+    SlipExamples,
+    SlipSurface,
+    SurfacePrediction,
+)
 from slipwise_thesis.thesis_figure import ThesisFigure
 
 TERMS = _core.named_basis("thesis-15")  # those of (5.1)

@@ -11,7 +11,11 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.number_text import number_text
-from slipwise.surfaces import (
+from slipwise_thesis import _thesis
+from slipwise_thesis.fixture import Fixture
+from slipwise_thesis.grid import Grid
+from slipwise_thesis.panel import BASELINE, FITTED, MEASURED, Line, Panel, Points, Series
+from slipwise_thesis.surfaces import (
     BayesianSurface,
     GaussianProcessOptions,
     GaussianProcessSurface,
@@ -20,9 +24,6 @@ from slipwise.surfaces import (
     UpdatableSurface,
     slip_examples,
 )
-from slipwise_thesis.fixture import Fixture
-from slipwise_thesis.grid import Grid
-from slipwise_thesis.panel import BASELINE, FITTED, MEASURED, Line, Panel, Points, Series
 from slipwise_thesis.thesis_figure import ThesisFigure
 
 BASIS = _core.named_basis("odd-even-10")
@@ -90,7 +91,7 @@ def draw(count: int, seed: int) -> SlipExamples:
     random = np.random.Generator(np.random.PCG64(seed))
     drive = random.uniform((0.3, -1.0), (2.5, 1.0), (count, 2))
     alpha = np.array([-0.05, -0.02, -0.01, 0.03, -0.04, 0.01, -0.4, 0.05, 0.03, 0.01])
-    rows = _core.feature_rows(BASIS, *(np.ascontiguousarray(column) for column in drive.T)) * alpha
+    rows = _thesis.feature_rows(BASIS, *(np.ascontiguousarray(column) for column in drive.T)) * alpha
     law = np.column_stack([rows[:, part].sum(axis=1) for part in (slice(0, 3), slice(3, 6), slice(6, 10))])
     return slip_examples(drive, law + 0.02 * random.standard_normal((count, 3)))
 

@@ -10,11 +10,11 @@ import numpy as np
 from slipwise import _core
 from slipwise.logs import Inputs
 from slipwise.number_text import number_text
-from slipwise.surfaces import BayesianSurface, LeastSquaresSurface
 from slipwise_sim import Perturbation, Scenario, Truth, simulate
 from slipwise_thesis.chapter5_examples import fitted, simulated_examples
 from slipwise_thesis.fixture import Fixture
 from slipwise_thesis.panel import FITTED, IDEAL, INK, MEASURED, Dash, Floats, Line, Panel, paths_line
+from slipwise_thesis.surfaces import BayesianSurface, LeastSquaresSurface
 from slipwise_thesis.thesis_figure import ThesisFigure
 
 BASIS = _core.named_basis("odd-even-10")

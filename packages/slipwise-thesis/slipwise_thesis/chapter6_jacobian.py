@@ -10,6 +10,7 @@ import numpy as np
 from slipwise import _core
 from slipwise.logs import Log
 from slipwise.number_text import number_text
+from slipwise_thesis import _thesis
 from slipwise_thesis.chapter6_recording import (
     EXACT,
     HORIZON,
@@ -70,7 +71,8 @@ def fractions_wrong(log: Log, length: float) -> tuple[float, float]:
     for i, segment in enumerate(windows.segments):
         at = _core.linearize_segment(motion, np.zeros(motion.size), windows.input_history(i), segment)
         exact, thesis = (
-            np.array(_core.segment_jacobian(kind, motion, at, segment))[:2] * unit for kind in (EXACT, THESIS)
+            np.array(_thesis.segment_jacobian(kind, motion, at, segment))[:2] * unit
+            for kind in (EXACT, THESIS)
         )
         fractions.append(float(np.linalg.norm(thesis - exact) / np.linalg.norm(exact)))
     return float(np.mean(fractions)), float(np.max(fractions))

@@ -11,16 +11,17 @@ import numpy as np
 from slipwise import _core
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.estimators import estimator_motion, fed_windows
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.predictors import Predictor, predictions_of
 from slipwise.calibration.prepared_run import Ints, WindowSet, collect_windows, prepare_run
 from slipwise.logs import Log
+from slipwise_thesis import _thesis
+from slipwise_thesis.estimators import estimator_motion, fed_windows
 from slipwise_thesis.panel import Floats
 
 HORIZON = 5.0  # s, of Table 6.2
-EXACT, THESIS = _core.SegmentJacobian.Exact, _core.SegmentJacobian.Thesis
+EXACT, THESIS = _thesis.SegmentJacobian.Exact, _thesis.SegmentJacobian.Thesis
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Course:
     estimator: str
     basis: str = "thesis-15"
     input_name: str = "wheel"
-    jacobian: _core.SegmentJacobian = THESIS  # of `ekf-thesis`
+    jacobian: _thesis.SegmentJacobian = THESIS  # of `ekf-thesis`
 
     @property
     def settings(self) -> Settings:
@@ -90,9 +91,9 @@ def drive_windows(log: Log, course: Course, length: float | None = None) -> Wind
 def record(log: Log, course: Course) -> Recording:
     """Learn a drive from nothing and keep every posterior."""
     motion = estimator_motion(course.estimator, course.settings, course.input_name)
-    settings = _core.EstimatorSettings()
+    settings = _thesis.EstimatorSettings()
     settings.ekf_thesis = _with_jacobian(settings.ekf_thesis, course.jacobian)
-    estimator = _core.FollowingEstimator(
+    estimator = _thesis.FollowingEstimator(
         course.estimator, motion, course.settings.filter_settings(), settings
     )
     windows = drive_windows(log, course)
@@ -109,7 +110,7 @@ def record(log: Log, course: Course) -> Recording:
     )
 
 
-def _now(estimator: _core.FollowingEstimator) -> tuple[Floats, Floats, Floats, Floats]:
+def _now(estimator: _thesis.FollowingEstimator) -> tuple[Floats, Floats, Floats, Floats]:
     """Mean, covariance, noise scale and prior standard deviations."""
     estimate = estimator.estimate()
     known = (estimate.mean, estimate.covariance, estimator.noise_scale, estimator.prior_std)
@@ -118,7 +119,7 @@ def _now(estimator: _core.FollowingEstimator) -> tuple[Floats, Floats, Floats, F
 
 
 def _with_jacobian(
-    settings: _core.EkfThesisSettings, jacobian: _core.SegmentJacobian
-) -> _core.EkfThesisSettings:
+    settings: _thesis.EkfThesisSettings, jacobian: _thesis.SegmentJacobian
+) -> _thesis.EkfThesisSettings:
     settings.jacobian = jacobian
     return settings

@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise import _core
 from slipwise.number_text import number_text
+from slipwise_thesis import _thesis
 from slipwise_thesis.fixture import Fixture
 from slipwise_thesis.grid import Grid
 from slipwise_thesis.monte_carlo import (
@@ -31,7 +31,7 @@ Results = dict[str, list[RunResult]]  # by the label of the feeding
 
 BASIS, SIZE = "odd-even-10", 10
 MINUTES = 3.0
-THESIS_FILTER = Feeding("ekf-thesis", 1, _core.SegmentJacobian.Thesis)
+THESIS_FILTER = Feeding("ekf-thesis", 1, _thesis.SegmentJacobian.Thesis)
 NOISES = {"slip and pose noise": NOISE, "mostly pose noise": POSE_NOISE}
 
 

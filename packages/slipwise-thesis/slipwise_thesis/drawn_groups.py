@@ -6,13 +6,14 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
+from slipwise_thesis import _thesis
 from slipwise_thesis.fixture import CIRCLE
 from slipwise_thesis.steady import DrawRules, SteadyGroup, SteadyPath, draw_paths, group_paths
 
 SLIP = np.array([-0.02, 0.01, -0.08])  # [m/s, m/s, rad/s]
 PSD = np.array([4e-4, 2e-4, 3e-4])  # [m^2/s, m^2/s, rad^2/s]
 START = np.array([1e-4, 1e-4, 4e-4])  # [m^2, m^2, rad^2]
-NOISE = _core.SteadyNoise(PSD, START, np.zeros(3))
+NOISE = _thesis.SteadyNoise(PSD, START, np.zeros(3))
 
 
 def drawn_group(*, seed: int, count: int) -> SteadyGroup:

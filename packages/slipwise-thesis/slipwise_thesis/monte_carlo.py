@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.calibration.statistics import chi_square_band
+from slipwise_thesis import _thesis
 
 Floats = NDArray[np.float64]
 
@@ -34,19 +35,19 @@ class Feeding:
 
     estimator: str  # a name of `make_estimator`
     stride: int = WINDOW_STEPS  # steps between the starts of windows; one more and neighbours share no pose
-    jacobian: _core.SegmentJacobian = _core.SegmentJacobian.Exact  # of ekf-thesis
+    jacobian: _thesis.SegmentJacobian = _thesis.SegmentJacobian.Exact  # of ekf-thesis
 
     @property
     def label(self) -> str:
         """The estimator and what is peculiar about its windows."""
         fed = {1: "20 Hz", WINDOW_STEPS: "shared poses"}.get(self.stride, "no shared pose")
-        thesis = ", (6.7)" if self.jacobian == _core.SegmentJacobian.Thesis else ""
+        thesis = ", (6.7)" if self.jacobian == _thesis.SegmentJacobian.Thesis else ""
         return f"{self.estimator}, {fed}{thesis}"
 
 
 ESTIMATORS = (
     Feeding("gradient-descent", 1),
-    Feeding("ekf-thesis", 1, _core.SegmentJacobian.Thesis),
+    Feeding("ekf-thesis", 1, _thesis.SegmentJacobian.Thesis),
     Feeding("ekf-thesis", 1),
     Feeding("iekf"),
     Feeding("iekf", WINDOW_STEPS + 1),
@@ -107,10 +108,10 @@ def known_run(basis: str, seed: int, noise: _core.MotionNoise = NOISE, *, minute
 
 def learned(feeding: Feeding, drive: KnownRun) -> _core.Estimate:
     """Learn the whole drive."""
-    settings = _core.EstimatorSettings()
+    settings = _thesis.EstimatorSettings()
     settings.noise, settings.ekf_thesis.jacobian = drive.noise, feeding.jacobian
     settings.iekf.huber, settings.iekf.gate = NO_OUTLIERS
-    estimator = _core.make_estimator(feeding.estimator, drive.model, drive.prior, settings)
+    estimator = _thesis.make_estimator(feeding.estimator, drive.model, drive.prior, settings)
     for segment in drive.segments(feeding.stride):
         estimator.learn(drive.history, segment)
     return estimator.estimate()

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from slipwise.evaluation.slip_surfaces import LARGEST_PROCESS
 from slipwise.number_text import DASH, number_text
 from slipwise_thesis.fixture import Fixture
 from slipwise_thesis.grid import Grid
@@ -25,6 +24,7 @@ from slipwise_thesis.real_log_scores import (
     mean_ratios,
     warthog_names,
 )
+from slipwise_thesis.slip_surfaces import LARGEST_PROCESS
 from slipwise_thesis.thesis_figure import ThesisFigure, figure_of_log
 
 Progress = Callable[[str, float], None]

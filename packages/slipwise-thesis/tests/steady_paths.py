@@ -6,13 +6,14 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady import DrawRules, GroupRules, SteadyGroup, SteadyPath, draw_paths, group_paths
 
 SLIP = np.array([-0.02, 0.01, -0.08])
 PSD = np.array([4e-4, 2e-4, 3e-4])
 START = np.array([1e-4, 1e-4, 4e-4])
-NOISE = _core.SteadyNoise(PSD, START, np.zeros(3))
-QUIET = _core.SteadyNoise(PSD * 1e-3, START * 1e-3, np.zeros(3))
+NOISE = _thesis.SteadyNoise(PSD, START, np.zeros(3))
+QUIET = _thesis.SteadyNoise(PSD * 1e-3, START * 1e-3, np.zeros(3))
 
 
 def drawn_group(
@@ -20,7 +21,7 @@ def drawn_group(
     seed: int,
     count: int = 60,
     command: tuple[float, float] = (0.5, 0.25),
-    noise: _core.SteadyNoise = NOISE,
+    noise: _thesis.SteadyNoise = NOISE,
 ) -> SteadyGroup:
     """Return `count` segments of 3 s under one command (v, omega) with the slip and noise above."""
     v, omega = command

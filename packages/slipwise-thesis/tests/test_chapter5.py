@@ -13,10 +13,15 @@ from steady_paths import drawn_group
 
 from slipwise import _core
 from slipwise.errors import SettingsError
-from slipwise.surfaces import BayesianSurface, GaussianProcessSurface, LeastSquaresSurface, as_basis_model
 from slipwise_thesis import SMALL, Fixture, Points, Surface, ThesisFigure
 from slipwise_thesis.chapter5 import chapter5_figures
 from slipwise_thesis.chapter5_examples import examples_of, husky_examples
+from slipwise_thesis.surfaces import (
+    BayesianSurface,
+    GaussianProcessSurface,
+    LeastSquaresSurface,
+    as_basis_model,
+)
 
 pytestmark = pytest.mark.slow
 

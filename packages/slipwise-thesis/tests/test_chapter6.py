@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from slipwise import _core
-from slipwise.calibration.estimator_run import run_estimator
 from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.predictors import predictions_of
 from slipwise.logs import Log
-from slipwise_thesis import SMALL, Fixture, Heat, Line, ThesisFigure
+from slipwise_thesis import SMALL, Fixture, Heat, Line, ThesisFigure, _thesis
 from slipwise_thesis.chapter6 import chapter6_figures
 from slipwise_thesis.chapter6_circling import circling
 from slipwise_thesis.chapter6_convergence import without_slip
@@ -28,6 +27,7 @@ from slipwise_thesis.chapter6_table import (
     gain_findings,
     order_findings,
 )
+from slipwise_thesis.estimator_run import run_estimator
 
 pytestmark = pytest.mark.slow
 
@@ -164,8 +164,8 @@ def test_the_thesis_jacobian_is_worse_over_longer_segments(circles: Log) -> None
     motion = _core.MotionModel(_core.named_basis("thesis-15"), False, False)
     at = _core.linearize_segment(motion, np.zeros(15), windows.input_history(0), windows.segments[0])
     thesis, exact = (
-        np.array(_core.segment_jacobian(kind, motion, at, windows.segments[0]))
-        for kind in (_core.SegmentJacobian.Thesis, EXACT)
+        np.array(_thesis.segment_jacobian(kind, motion, at, windows.segments[0]))
+        for kind in (_thesis.SegmentJacobian.Thesis, EXACT)
     )
     np.testing.assert_allclose(thesis[2], exact[2], atol=1e-12)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from slipwise.calibration.estimator_run import run_estimator
+from slipwise.calibration.estimator_run import estimator_info
 from slipwise.calibration.judge import Judged, Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement, too_short
 from slipwise.calibration.learned import Learned
@@ -206,7 +206,8 @@ def _by_estimator(settings: Settings, windows: WindowSet, progress: Progress | N
             "throttle and steering are learned by the average of bases alone",
             advice=f"estimator = {AVERAGE!r}",
         )
-    run = run_estimator(settings, windows.drive[0].input_name, windows, record=True, progress=progress)
+    learn = estimator_info(settings.estimator).run
+    run = learn(settings, windows.drive[0].input_name, windows, record=True, progress=progress)
     predictor = Predictor("learned", settings.filter_settings().noise.shape, run.posterior, run.dynamics)
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     predictions = predict_all(predictor, windows, sets)

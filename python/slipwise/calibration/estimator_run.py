@@ -1,16 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A log learned by one of the estimators that the learner is compared with, window by window."""
+"""Estimators that the learner is compared with, as packages beside slipwise add them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
-import numpy as np
-
-from slipwise import _core
-from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.estimators import estimator_learner, estimator_motion, fed_windows
+from slipwise import plugins
 from slipwise.calibration.learner import Posterior, Progress
 from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.result import History
@@ -29,64 +26,46 @@ class EstimatorRun:
     causal: bool  # whether what is kept is the last of the causal posteriors
 
 
-def run_estimator(
-    settings: Settings,
-    input_name: str,
-    windows: WindowSet,
-    *,
-    record: bool = False,
-    progress: Progress | None = None,
-) -> EstimatorRun:
-    """Prepare to learn; nothing is learned yet.
+class RunEstimator(Protocol):
+    """How an estimator learns."""
 
-    Args:
-        settings: what to learn and how.
-        input_name: "command" or "wheel".
-        windows: what counts as learned; posteriors are asked for by counts of them.
-        record: keep the history.
-        progress: called with the fraction done, 0 to 1, where the history is kept.
+    def __call__(
+        self,
+        settings: Settings,
+        input_name: str,
+        windows: WindowSet,
+        *,
+        record: bool = False,
+        progress: Progress | None = None,
+    ) -> EstimatorRun:
+        """Prepare to learn; nothing is learned yet.
+
+        Args:
+            settings: what to learn and how; they name the estimator.
+            input_name: "command" or "wheel".
+            windows: what counts as learned; posteriors are asked for by counts of them.
+            record: keep the history.
+            progress: called with the fraction done, 0 to 1, where the history is kept.
+
+        Raises:
+            SettingsError: a basis or a term is unknown.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class EstimatorInfo:
+    """An estimator that a package adds."""
+
+    run: RunEstimator
+    off_line: bool  # whether it fits all windows at once
+
+
+def estimator_info(name: str) -> EstimatorInfo:
+    """Return the estimator of this name.
 
     Raises:
-        SettingsError: a basis or a term is unknown.
+        SlipwiseError: no installed package adds it.
     """
-    name = settings.estimator
-    motion = estimator_motion(name, settings, input_name)
-    learner, fed = estimator_learner(name, motion, settings), fed_windows(name, settings, windows)
-    causal = not _core.fits_all_segments(name)
-    history = _empty_history(fed, motion)
-
-    def see(i: int, update: _core.IekfUpdate, posterior: Posterior) -> None:
-        history.mean[i], history.std[i] = posterior.mean, np.sqrt(np.diag(posterior.covariance))
-        history.nis[i], history.weight[i] = update.nis, update.weight
-        if progress is not None and i % 50 == 0:
-            progress((i + 1) / len(fed))
-
-    passing = CausalPass(learner, fed, see if record else None, pace=windows)
-
-    def kept() -> Posterior:
-        passing.finish()
-        return learner.fitted()
-
-    def recorded() -> History | None:
-        passing.finish()
-        return history if record and causal else None
-
-    return EstimatorRun(passing.posterior, kept, recorded, (motion.basis.name,), motion.dynamics, causal)
-
-
-def _empty_history(windows: WindowSet, motion: _core.MotionModel) -> History:
-    names = tuple(info.name for info in motion.parameters)
-    count = len(windows)
-    return History(
-        run=np.array([windows.drive[p].index for p in windows.position], dtype=np.int64),
-        t=windows.end,
-        names=names,
-        mean=np.zeros((count, len(names))),
-        std=np.zeros((count, len(names))),
-        nis=np.zeros(count),
-        weight=np.zeros(count),
-        bases=(motion.basis.name,),
-        basis_weight=np.ones((count, 1)),
-        change=np.zeros(count),
-        alarm=np.zeros(count, dtype=np.bool_),
-    )
+    info: EstimatorInfo = plugins.load(plugins.ESTIMATORS, name)
+    return info

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
-from slipwise import _core
+from slipwise import _core, plugins
 from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.log_table import LogTable
 from slipwise.calibration.source_tables import PoseSourceTable
@@ -35,7 +35,7 @@ Seconds = Annotated[float, Field(ge=1e-6, le=100.0)]  # of a time constant or de
 Metres = Annotated[float, Field(ge=-FARTHEST_SENSOR, le=FARTHEST_SENSOR)]
 AUTO_BASES = tuple(basis.name for basis in _core.HypothesisSettings().bases)
 AVERAGE = "average"  # the estimator that weighs bases, each learned by a causal filter
-ESTIMATORS = (AVERAGE, *_core.estimator_names())
+NOMINAL_WHEEL_SEPARATION = 0.6  # m, where the settings do not give it
 SEGMENT_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to differ from slip
 
 _PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
@@ -83,8 +83,17 @@ class NoiseTable(_Section):
 
 
 def _known_estimator(name: str) -> str:
-    if name not in ESTIMATORS:
-        raise ValueError(f"unknown estimator '{name}'; known are {', '.join(ESTIMATORS)}")
+    """Return the name of an estimator.
+
+    Raises:
+        SlipwiseError: it comes with a package that is not installed.
+    """
+    if name == AVERAGE:
+        return name
+    plugins.refuse_missing(plugins.ESTIMATORS, name)
+    known = (AVERAGE, *plugins.added(plugins.ESTIMATORS))
+    if name not in known:
+        raise ValueError(f"unknown estimator '{name}'; known are {', '.join(known)}")
     return name
 
 
@@ -171,11 +180,10 @@ class SegmentTable(_Section):
 
 
 class VehicleTable(_Section):
-    """What the log does not say of the robot; the methods with slip ratios alone need it."""
+    """What the log does not say of the robot; the search for limits of its sides and slip ratios use it."""
 
-    wheel_separation: Annotated[float, Field(ge=0.01, le=100.0)] = (
-        _core.NOMINAL_WHEEL_SEPARATION
-    )  # m, between the left and the right wheels
+    # m, between the left and the right wheels
+    wheel_separation: Annotated[float, Field(ge=0.01, le=100.0)] = NOMINAL_WHEEL_SEPARATION
 
 
 class SensorExtrinsicsTable(_Section):

@@ -52,7 +52,8 @@ def evaluate(
             "vendor, batch, model, auto, bases, single estimators (gradient-descent, ekf-thesis, iekf, "
             "delayed-state), slip-ratio-ekf or slip-ratio-smo, surfaces (surface-least-squares, "
             "surface-gaussian-process, surface-bayesian), separated by commas; "
-            "`none` always is. Default: all but estimators, slip ratios and surfaces.",
+            "`none` always is. Default: all but estimators, slip ratios and surfaces. Those and "
+            "batch come with the package slipwise-thesis.",
         ),
     ] = None,
     vendor_wheel_separation_multiplier: Annotated[
@@ -229,7 +230,7 @@ def _write_result(
 
 def _learned(log: Log, evaluation: Evaluation, settings: Settings) -> Calibration | None:
     """Learn what the judged method learns, for its parameters; None where no method learns."""
-    from slipwise import _core
+    from slipwise import plugins
     from slipwise.calibration import calibrate
     from slipwise.calibration.settings import AVERAGE
     from slipwise.cli.evaluation_verdict import judged_method
@@ -237,7 +238,7 @@ def _learned(log: Log, evaluation: Evaluation, settings: Settings) -> Calibratio
     method = judged_method(evaluation.methods, evaluation.models)
     if method is None:
         return None
-    if method in _core.estimator_names():
+    if method in plugins.added(plugins.ESTIMATORS):
         settings = settings.model_copy(update={"estimator": method})
     elif method not in evaluation.models:
         settings = settings.model_copy(update={"basis": method, "estimator": AVERAGE})

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 
-from slipwise import _core
-from slipwise.calibration.estimator_run import run_estimator
+from slipwise import _core, plugins
+from slipwise.calibration.estimator_run import estimator_info
 from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.plain import baseline_predictor, model_predictor, vendor_predictor
 from slipwise.calibration.predictions import Predictions
@@ -15,9 +15,7 @@ from slipwise.calibration.predictors import Predictor, predict_all
 from slipwise.calibration.prepared_run import WindowSet, collect_windows
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.sloping_ground import SIDEWAYS_BASES, SLOPE_BASES
-from slipwise.errors import SettingsError
-from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
-from slipwise.evaluation.slip_surfaces import surface_predictor
+from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.models.model import Model
 from slipwise.segments import car_prior
 
@@ -43,6 +41,7 @@ class MethodInfo:
     description: str
 
 
+BOUND = "batch"  # the estimator that has seen the whole log
 _ADDED: dict[str, MethodInfo] = {}
 
 
@@ -58,7 +57,8 @@ def method_names(contest: Contest) -> tuple[str, ...]:
         names.append("vendor")
     # Where the ground is level, or nothing drives sideways.
     left_out = {*SLOPE_BASES, *SIDEWAYS_BASES} - set(contest.settings.auto.bases)
-    names += [*(name for name in _core.basis_names() if name not in left_out), "batch"]
+    names += [name for name in _core.basis_names() if name not in left_out]
+    names += [BOUND] if BOUND in plugins.added(plugins.ESTIMATORS) else []
     names += contest.models
     if contest.settings.basis == "custom":
         names.append("custom")
@@ -72,28 +72,13 @@ def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
 
     Raises:
         SettingsError: there is no such method.
+        SlipwiseError: it comes with a package that is not installed.
     """
     special = {
         "none": MethodInfo(_plain, "the kinematic baseline: no slip, no lag"),
-        "vendor": MethodInfo(_by(_vendor), "a vendor's wheel-separation multiplier"),
+        "vendor": MethodInfo(by(_vendor), "a vendor's wheel-separation multiplier"),
         "model": MethodInfo(_model, "the model file as it is"),
         "auto": MethodInfo(learned, "average of several bases by how well they predict"),
-        "slip-ratio-ekf": MethodInfo(
-            _by(lambda _, c: slip_ratio_filter(c.input_name, c.settings, c.windows)),
-            "slip ratios and slip angle (thesis 2.5 to 2.7) by an EKF, from wheel speeds",
-        ),
-        "slip-ratio-smo": MethodInfo(
-            _by(lambda _, c: slip_ratio_observer(c.input_name, c.settings, c.windows)),
-            "the same by a sliding-mode observer; its covariance is the noise shape alone",
-        ),
-        "surface-least-squares": MethodInfo(_by(_surface), "slip surface by least squares (thesis 5.5)"),
-        "surface-gaussian-process": MethodInfo(
-            _by(_surface),
-            "slip surface by a Gaussian process (thesis Table 5.1), as terms of the settings' basis",
-        ),
-        "surface-bayesian": MethodInfo(
-            _by(_surface), "slip surface by Bayesian linear regression (thesis 5.13)"
-        ),
         "custom": MethodInfo(learned, "the terms of the settings file"),
         **_ADDED,
     }
@@ -103,11 +88,17 @@ def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
         return special[name]
     if name in _core.basis_names():
         return MethodInfo(learned, f"the basis {name}, learned causally")
-    if name in _core.estimator_names():
+    estimators, methods = plugins.added(plugins.ESTIMATORS), plugins.added(plugins.METHODS)
+    if name in methods:
+        added: MethodInfo = plugins.load(plugins.METHODS, name)
+        return added
+    if name in estimators:
         off_line = ", fitted to the whole log, the windows judged included"
-        about = off_line if _core.fits_all_segments(name) else ""
-        return MethodInfo(_by(_estimator), f"the estimator {name} with the basis of the settings{about}")
-    known = ", ".join([*special, *_core.basis_names(), *_core.estimator_names()])
+        about = off_line if estimator_info(name).off_line else ""
+        return MethodInfo(by(_estimator), f"the estimator {name} with the basis of the settings{about}")
+    for group in (plugins.METHODS, plugins.ESTIMATORS):
+        plugins.refuse_missing(group, name)
+    known = ", ".join([*special, *methods, *_core.basis_names(), *estimators])
     raise SettingsError(f"unknown method '{name}'", where="--methods", advice=f"known are {known}")
 
 
@@ -116,14 +107,14 @@ def refuse_names_of_methods(models: Collection[str]) -> None:
     for name in set(models) - {"model"}:
         try:
             method_info(name)
-        except SettingsError:
+        except SlipwiseError:
             continue
         raise SettingsError(
             f"a model has the name of the method {name}", where="model", advice="name it by its file"
         )
 
 
-def _by(make: Callable[[str, Contest], Predictor]) -> Callable[[str, Contest], tuple[Predictions, ...]]:
+def by(make: Callable[[str, Contest], Predictor]) -> Callable[[str, Contest], tuple[Predictions, ...]]:
     """Predict with what `make` returns."""
 
     def predict(name: str, contest: Contest) -> tuple[Predictions, ...]:
@@ -170,16 +161,12 @@ def _plain(_: str, contest: Contest) -> tuple[Predictions, ...]:
 
 def _estimator(name: str, contest: Contest) -> Predictor:
     settings = contest.settings.model_copy(update={"estimator": name})
-    run = run_estimator(settings, contest.input_name, contest.windows)
+    run = estimator_info(name).run(settings, contest.input_name, contest.windows)
     shape = settings.filter_settings().noise.shape
     if run.causal:
         return Predictor(name, shape, run.posterior, run.dynamics)
     kept = run.kept()
     return Predictor(name, shape, lambda _: kept, run.dynamics, causal=False)
-
-
-def _surface(name: str, contest: Contest) -> Predictor:
-    return surface_predictor(name, contest.input_name, contest.settings, contest.windows)
 
 
 def _vendor(name: str, contest: Contest) -> Predictor:

@@ -17,10 +17,8 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
 from bindings.sound_arguments import owner_of, sound
-from bindings.stub_calls import Bound, bound_functions
+from bindings.stub_calls import Bound, bound_functions, compiled
 from bindings.unusual_objects import other_objects
-
-from slipwise import _core
 
 SECONDS = 20  # until a call counts as hanging
 MEMORY = 4 << 30  # bytes
@@ -84,8 +82,8 @@ _ABSENT = object()
 def target(bound: Bound) -> Callable[..., Any]:
     """Return what is called, on a fresh object where it is a method."""
     if not bound.owner:
-        return getattr(_core, bound.name)  # type: ignore[no-any-return]
-    kind = getattr(_core, bound.owner)
+        return compiled(bound.name)  # type: ignore[no-any-return]
+    kind = compiled(bound.owner)
     if bound.name == "__init__":
         return kind  # type: ignore[no-any-return]
     owner = kind if bound.name == "with_response" else owner_of(bound)

@@ -12,9 +12,10 @@ from bindings.sound_dynamics import DYNAMICS_ARGUMENTS, DYNAMICS_OBJECTS
 from bindings.sound_surfaces import SURFACE_ARGUMENTS, SURFACE_OBJECTS, remembering_learner
 from bindings.sound_terrain import TERRAIN_ARGUMENTS, TERRAIN_OBJECTS
 from bindings.sound_vehicles import VEHICLE_ARGUMENTS, VEHICLE_OBJECTS
-from bindings.stub_calls import Bound, bound_functions
+from bindings.stub_calls import Bound, bound_functions, compiled
 
 from slipwise import _core
+from slipwise_thesis import _thesis
 
 SIZE = 3  # parameters of the model below: two of slip, and the clock offset
 ROWS = 60
@@ -61,35 +62,35 @@ def _expected() -> _core.ExpectedPose:
     return _core.DisturbanceFilter(_law()).predict(_posterior(), _inputs(), _now(), _segment())
 
 
-def _steady() -> _core.SteadySegment:
+def _steady() -> _thesis.SteadySegment:
     times = np.array([0.0, 1.0, 2.0])
     rng = np.random.default_rng(1)
-    return _core.SteadySegment(_core.BodyTwist(1.0, 0.0, 0.2), times, rng.normal(size=(3, 3)) * 0.1)
+    return _thesis.SteadySegment(_core.BodyTwist(1.0, 0.0, 0.2), times, rng.normal(size=(3, 3)) * 0.1)
 
 
-def _noise_group() -> _core.NoiseGroup:
+def _noise_group() -> _thesis.NoiseGroup:
     rng = np.random.default_rng(2)
-    return _core.NoiseGroup(
+    return _thesis.NoiseGroup(
         _core.BodyTwist(1.0, 0.0, 0.2), [1.0, 2.0], list(rng.normal(size=(9, 3, 2)) * 0.1)
     )
 
 
-def _fit() -> _core.LeastSquaresFit:
-    return _core.fit_least_squares(_features(), T, np.ones(ROWS))
+def _fit() -> _thesis.LeastSquaresFit:
+    return _thesis.fit_least_squares(_features(), T, np.ones(ROWS))
 
 
 def _features() -> np.ndarray:
     return np.column_stack([np.ones(ROWS), np.sin(T)])
 
 
-def _regression() -> _core.BayesianRegression:
-    regression = _core.BayesianRegression(np.ones(2), 0.1, 1.0)
+def _regression() -> _thesis.BayesianRegression:
+    regression = _thesis.BayesianRegression(np.ones(2), 0.1, 1.0)
     regression.add(_example())
     return regression
 
 
-def _example() -> _core.RegressionExample:
-    return _core.RegressionExample(np.array([1.0, 0.5]), 0.3, 1.0)
+def _example() -> _thesis.RegressionExample:
+    return _thesis.RegressionExample(np.array([1.0, 0.5]), 0.3, 1.0)
 
 
 def _limits() -> _core.CommandLimits:
@@ -124,8 +125,10 @@ def _uncertain() -> _core.UncertainModel:
     return _core.UncertainModel(model, np.full(SIZE, 0.01), *spread, 0.1, [0.0] * 4, None, None)
 
 
-def _following() -> _core.FollowingEstimator:
-    return _core.FollowingEstimator("iekf", _model(), _core.CausalFilterSettings(), _core.EstimatorSettings())
+def _following() -> _thesis.FollowingEstimator:
+    return _thesis.FollowingEstimator(
+        "iekf", _model(), _core.CausalFilterSettings(), _thesis.EstimatorSettings()
+    )
 
 
 def _average() -> _core.ModelAverage:
@@ -170,14 +173,14 @@ def _chain_learner() -> _core.ActuatorFilter:
     return _core.ActuatorFilter(_core.CausalFilterSettings())
 
 
-def _slip_ratios() -> _core.SlipRatioFilterSettings:
-    settings = _core.SlipRatioFilterSettings()
+def _slip_ratios() -> _thesis.SlipRatioFilterSettings:
+    settings = _thesis.SlipRatioFilterSettings()
     settings.noise = _noise()
     return settings
 
 
-def _estimator_settings() -> _core.EstimatorSettings:
-    settings = _core.EstimatorSettings()
+def _estimator_settings() -> _thesis.EstimatorSettings:
+    settings = _thesis.EstimatorSettings()
     settings.noise = _noise()
     return settings
 
@@ -207,7 +210,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "WheelRecord": _record,
     "ActuatorState": _drive_start,
     "Estimate": _estimate,
-    "Estimator": lambda: _core.make_estimator("iekf", _model(), _estimate(), _estimator_settings()),
+    "Estimator": lambda: _thesis.make_estimator("iekf", _model(), _estimate(), _estimator_settings()),
     "ExpectedPose": _expected,
     "FollowingEstimator": _following,
     "Gpu": lambda: None,
@@ -220,7 +223,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "LimitSearch": lambda: None,
     "ElevationMap": _elevations,
     "Ground": lambda: _core.Ground.mapped(_elevations(), _core.Pose2(0.5, 0.5, 0.3)),
-    "LogVarianceFit": lambda: _core.fit_log_variance(np.column_stack([T, np.sin(T)]), _fit()),
+    "LogVarianceFit": lambda: _thesis.fit_log_variance(np.column_stack([T, np.sin(T)]), _fit()),
     "MotionPosterior": _posterior,
     "MotionLearner": _learner,
     "MotionModel": _model,
@@ -231,16 +234,16 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "Recording": _recording,
     "RegressionExample": _example,
     "RolloutProgram": lambda: _core.RolloutProgram(_model(), np.full(SIZE, 0.01), 0.1, [0.0] * 4, None, None),
-    "ScatterCentre": lambda: _core.ScatterCentre.Mean,
+    "ScatterCentre": lambda: _thesis.ScatterCentre.Mean,
     "Segment": _segment,
-    "SegmentJacobian": lambda: _core.SegmentJacobian.Thesis,
+    "SegmentJacobian": lambda: _thesis.SegmentJacobian.Thesis,
     "SegmentLinearization": lambda: _core.linearize_segment(_model(), np.zeros(SIZE), _inputs(), _segment()),
     "SegmentPath": lambda: _core.linearize_segment(_model(), np.zeros(SIZE), _inputs(), _segment()).path,
     "SlipNow": _now,
     "SlipRatioFilterSettings": _slip_ratios,
     "StartList": lambda: _core.StartList(np.zeros((1, 5)), np.zeros((1, 1, 2))),
     "Status": lambda: _core.Status.Converged,
-    "SteadyNoise": lambda: _core.SteadyNoise(np.full(3, 0.01), np.full(3, 0.01), np.full(3, 0.01)),
+    "SteadyNoise": lambda: _thesis.SteadyNoise(np.full(3, 0.01), np.full(3, 0.01), np.full(3, 0.01)),
     "SteadySegment": _steady,
     "TrajectoryPlanner": _planner,
     "TrajectoryStatus": lambda: _core.TrajectoryStatus.Reached,
@@ -354,7 +357,7 @@ def sound(bound: Bound, parameter: str, annotation: str) -> Any:
         return make()
     if annotation.endswith(" | None") and "NDArray" not in annotation:
         return None
-    if annotation in OBJECTS or hasattr(_core, annotation):
+    if annotation in OBJECTS or compiled(annotation) is not None:
         return of_type(annotation)
     if inner := re.fullmatch(r"Sequence\[(\w+)\]", annotation):
         return _list3 if inner[1] == "float" else [of_type(inner[1])]
@@ -375,7 +378,7 @@ def of_type(name: str) -> Any:
     if name in OBJECTS:
         return OBJECTS[name]()
     makers = [b for b in bound_functions() if b.owner == name and b.name == "__init__"]
-    return getattr(_core, name)(*(sound(makers[0], *parameter) for parameter in makers[0].parameters))
+    return compiled(name)(*(sound(makers[0], *parameter) for parameter in makers[0].parameters))
 
 
 def _array(bound: Bound, parameter: str, annotation: str) -> Any:

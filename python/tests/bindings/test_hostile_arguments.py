@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bindings.sound_arguments import of_type, owner_of, sound
-from bindings.stub_calls import bound_functions
+from bindings.stub_calls import bound_functions, compiled
 
 from slipwise import _core
 
@@ -66,11 +66,11 @@ def test_every_binding_works_with_its_sound_arguments(subtests: pytest.Subtests)
             if bound.title == "Gpu.__init__":
                 pytest.skip("there may be no GPU")
             if bound.name == "__init__":
-                getattr(_core, bound.owner)(*given)
+                compiled(bound.owner)(*given)
             elif bound.owner:
                 getattr(owner_of(bound), bound.name)(*given)
             else:
-                getattr(_core, bound.name)(*given)
+                compiled(bound.name)(*given)
 
 
 @pytest.mark.slow

@@ -10,6 +10,7 @@ import numpy as np
 from bindings.sound_arguments import of_type
 
 from slipwise import _core
+from slipwise_thesis import _thesis
 
 
 def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
@@ -23,7 +24,7 @@ def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
     long = _core.Segment(-1e9, 1e9, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
     others: dict[str, list[Any]] = {
         "Basis": [_core.named_basis("odd-even-10"), _core.Basis("none", [], [], [])],
-        "BayesianRegression": [_core.BayesianRegression(np.ones(5), 0.1, 1.0)],
+        "BayesianRegression": [_thesis.BayesianRegression(np.ones(5), 0.1, 1.0)],
         "BodyTwist": [_core.BodyTwist(nan, nan, nan), _core.BodyTwist(1e300, 1e300, 1e300)],
         "ActuatorModel": [
             _core.ActuatorModel(nan, nan, nan, nan, nan),
@@ -31,16 +32,16 @@ def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
         ],
         "Estimate": [_core.Estimate(np.zeros(9), np.eye(9)), _core.Estimate(zero[:0], np.zeros((0, 0)))],
         "InputHistory": [_core.InputHistory(zero, zero, zero, zero), _core.InputHistory(*[zero[:0]] * 4)],
-        "LeastSquaresFit": [_core.fit_least_squares(np.ones((9, 5)), np.ones(9), np.ones(9))],
+        "LeastSquaresFit": [_thesis.fit_least_squares(np.ones((9, 5)), np.ones(9), np.ones(9))],
         "MotionModel": [larger, _core.MotionModel(_core.Basis("none", [], [], []), False, False)],
         "Pose2": [_core.Pose2(nan, nan, nan), _core.Pose2(1e300, -1e300, 1e300)],
-        "RegressionExample": [_core.RegressionExample(np.ones(5), nan, 1.0)],
+        "RegressionExample": [_thesis.RegressionExample(np.ones(5), nan, 1.0)],
         "Ground": [_core.Ground.measured(np.full((2, 3), nan)), _core.Ground.grade(1e300, nan)],
         "Segment": [wide, late, backward, long, _core.Segment(nan, nan, _core.Pose2(0, 0, 0), None, 0, 0)]
         + [each.with_ground(_core.Ground.grade(0.1, nan)) for each in (late, long)],
         "SegmentLinearization": [path],
         "SegmentPath": [path.path],
-        "SteadySegment": [_core.SteadySegment(_core.BodyTwist(1, 0, 0), zero[:0], np.zeros((0, 3)))],
+        "SteadySegment": [_thesis.SteadySegment(_core.BodyTwist(1, 0, 0), zero[:0], np.zeros((0, 3)))],
         "DisturbanceModel": [_core.DisturbanceModel([], zero[:0])],
     }
     yield from ((f"another {kind} {number}", other) for number, other in enumerate(others.get(kind, [])))

@@ -13,6 +13,7 @@ from sample_logs import Drive, simulated_log
 from slipwise import _core
 from slipwise.calibration import Calibration, calibrate, make_settings
 from slipwise.logs import Log
+from slipwise_thesis import _thesis
 
 BEFORE, AFTER = (-0.02, -0.1), (-0.06, -0.4)  # edd-2: lon.V, ang.w
 RANDOM_WALK = {"drift": "random-walk", "length": 100.0}
@@ -73,7 +74,7 @@ def test_the_chain_is_the_robots_and_is_taken_as_learned() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["average", *_core.estimator_names()])
+@pytest.mark.parametrize("name", ["average", *_thesis.estimator_names()])
 def test_the_model_of_every_estimator_can_be_smoothed(name: str) -> None:
     course = learned(estimator=name).smoothed
     assert course is not None

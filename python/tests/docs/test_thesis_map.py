@@ -17,7 +17,7 @@ TABLES = {5: 1, 6: 2}
 SECTIONS = {"8.1", "8.1.1", "8.2", "8.3", "8.4"}
 
 PYTHON = re.compile(r"`(slipwise(?:_sim|_thesis)?(?:\.\w+)+)`")
-CPP = re.compile(r"\[`(\w+)`\]\(\.\./(cpp/include/[\w/]+\.hpp)\)")
+CPP = re.compile(r"\[`(\w+)`\]\(\.\./((?:packages/slipwise-thesis/)?cpp/include/[\w/]+\.hpp)\)")
 MADE = re.compile(r"(?:figure|table) `([a-z0-9-]+)`")
 
 

@@ -16,6 +16,7 @@ from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.evaluation.result import Score
 from slipwise.logs import Log, Source, empty_poses
+from slipwise_thesis import _thesis
 
 SLIP = _core.named_basis("edd-2")
 DRIVE = Drive(seconds=60.0, basis=SLIP, alpha=(-0.1, -0.4))
@@ -106,9 +107,9 @@ def test_the_estimator_of_the_settings_is_compared_by_default(log: Log) -> None:
 
 
 def test_single_estimators_are_methods_by_name(log: Log) -> None:
-    options = EvaluationOptions(horizons=(2.0,), methods=("none", *_core.estimator_names()))
+    options = EvaluationOptions(horizons=(2.0,), methods=("none", *_thesis.estimator_names()))
     result = evaluate(log, input="wheel", options=options)
-    for name in _core.estimator_names():
+    for name in _thesis.estimator_names():
         score = result.score(name, 2.0)
         assert score.causal == (name != "batch")
         assert score.position_ratio[0] < 0.5

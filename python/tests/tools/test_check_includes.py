@@ -45,7 +45,7 @@ def test_a_header_of_a_higher_layer_is_refused(tmp_path: Path, folder: str) -> N
         tmp_path,
         f"cpp/include/slipwise/{folder}/here.hpp",
         "#pragma once",
-        '#include "slipwise/online/there.hpp"',
+        '#include "slipwise/thesis/there.hpp"',
     )
     (fault,) = check(tmp_path)
     assert fault.startswith(f"cpp/include/slipwise/{folder}/here.hpp:3: '{folder}' must not include")

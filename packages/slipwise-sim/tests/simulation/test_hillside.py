@@ -11,13 +11,13 @@ from slipwise.calibration import calibrate
 from slipwise.errors import SettingsError
 from slipwise.ground import Grade
 from slipwise.models import Model
-from slipwise.surfaces import LeastSquaresSurface
 from slipwise_sim import Perturbation, Scenario, simulate
 from slipwise_sim.drive import hold
 from slipwise_sim.hillside import axes_of, gravity_on, traverse_drive
 from slipwise_sim.land_tamer import GRAVITY, LandTamer
 from slipwise_sim.physics import Sampling, World, run_physics
 from slipwise_sim.tyre_law import TyreLaw
+from slipwise_thesis.surfaces import LeastSquaresSurface
 
 ACROSS = Grade(slope=0.12, downhill=-np.pi / 2)
 

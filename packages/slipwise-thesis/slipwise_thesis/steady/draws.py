@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise_thesis import _thesis
 
 Floats = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ class DrawnPaths:
 
 
 def draw_paths(
-    twist: _core.BodyTwist, noise: _core.SteadyNoise, *, seed: int, rules: DrawRules = DrawRules()
+    twist: _core.BodyTwist, noise: _thesis.SteadyNoise, *, seed: int, rules: DrawRules = DrawRules()
 ) -> DrawnPaths:
     """Draw path segments around a steady twist (command and slip). The same seed gives the same segments.
 
@@ -66,7 +67,7 @@ def _integrate(start: Floats, rates: Floats, times: Floats) -> Floats:
     return np.array(moved)
 
 
-def _check(noise: _core.SteadyNoise, rules: DrawRules) -> None:
+def _check(noise: _thesis.SteadyNoise, rules: DrawRules) -> None:
     if rules.count < 1:
         raise SettingsError(f"count is {rules.count}", where="count", advice="draw at least one segment")
     for name in ("length", "period"):

@@ -8,8 +8,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from slipwise import _core
 from slipwise.errors import LogError, SettingsError
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady.paths import SteadyPath
 
 
@@ -48,7 +48,7 @@ class SteadyGroup:
             return f"turn in place at {self.omega:.3g} rad/s"
         return f"{self.v:.3g} m/s, curvature {self.curvature:.3g} 1/m"
 
-    def core(self) -> list[_core.SteadySegment]:
+    def core(self) -> list[_thesis.SteadySegment]:
         """Return the core's segments, each with its own command.
 
         Raises:

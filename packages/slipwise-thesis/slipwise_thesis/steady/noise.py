@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import LogError, SettingsError
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady.groups import SteadyGroup
 from slipwise_thesis.steady.slip_fit import fit_slip, slipped_twist
 
@@ -26,8 +27,8 @@ class NoiseRules:
     """How noise is fitted."""
 
     times: int = 6  # at which the scatter is looked at, evenly over the segments' common length
-    objective: _core.NoiseObjective = _core.NoiseObjective.Fisher  # or Thesis: (4.13)
-    centre: _core.ScatterCentre = _core.ScatterCentre.Mean  # or Curve: around the best fit
+    objective: _thesis.NoiseObjective = _thesis.NoiseObjective.Fisher  # or Thesis: (4.13)
+    centre: _thesis.ScatterCentre = _thesis.ScatterCentre.Mean  # or Curve: around the best fit
     pose_std: tuple[float, float, float] = (0.0, 0.0, 0.0)  # m, m, rad of a measured pose, where it is known
 
 
@@ -35,13 +36,13 @@ class NoiseRules:
 class GroupNoise:
     """What the scatter says."""
 
-    noise: _core.SteadyNoise  # psd [m^2/s, m^2/s, rad^2/s], start [m^2, m^2, rad^2]
+    noise: _thesis.SteadyNoise  # psd [m^2/s, m^2/s, rad^2/s], start [m^2, m^2, rad^2]
     covariance: Floats  # [6, 6] of (psd, start), grown by the overlap of the segments
     status: _core.Status
     notes: tuple[str, ...]  # what to know about the data: short rank, noises held at zero, groups left out
 
 
-def scatter_group(group: SteadyGroup, times: int) -> _core.NoiseGroup:
+def scatter_group(group: SteadyGroup, times: int) -> _thesis.NoiseGroup:
     """Return the group's residuals around its best-fit curve at the poses nearest to common times.
 
     Raises:
@@ -64,7 +65,7 @@ def scatter_group(group: SteadyGroup, times: int) -> _core.NoiseGroup:
         np.array(residual)[:, _nearest(path.times[1:], common)]
         for path, residual in zip(group.paths, fit.residuals, strict=True)
     ]
-    return _core.NoiseGroup(slipped_twist(group, np.array(fit.slip)), common.tolist(), residuals)
+    return _thesis.NoiseGroup(slipped_twist(group, np.array(fit.slip)), common.tolist(), residuals)
 
 
 def _nearest(times: Floats, wanted: Floats) -> NDArray[np.int64]:
@@ -84,11 +85,11 @@ def fit_group_noise(groups: Sequence[SteadyGroup], rules: NoiseRules = NoiseRule
     usable = [group for group in groups if len(group) >= LEAST_SEGMENTS] or list(groups[:1])
     if not usable:
         raise LogError("there are no groups", advice="look for held commands, or allow shorter segments")
-    settings = _core.NoiseFitSettings()
+    settings = _thesis.NoiseFitSettings()
     settings.objective, settings.centre = rules.objective, rules.centre
     settings.pose = np.array(rules.pose_std) ** 2
     try:
-        fit = _core.fit_noise([scatter_group(group, rules.times) for group in usable], settings)
+        fit = _thesis.fit_noise([scatter_group(group, rules.times) for group in usable], settings)
     except ValueError as error:
         raise LogError(str(error), where=usable[0].name if len(usable) == 1 else "all groups") from error
     notes = _notes(fit, len(groups) - len(usable))
@@ -98,7 +99,7 @@ def fit_group_noise(groups: Sequence[SteadyGroup], rules: NoiseRules = NoiseRule
     return GroupNoise(fit.noise, np.array(fit.covariance) * overlap, fit.status, notes)
 
 
-def _notes(fit: _core.NoiseFit, left_out: int) -> tuple[str, ...]:
+def _notes(fit: _thesis.NoiseFit, left_out: int) -> tuple[str, ...]:
     notes = []
     if left_out:
         notes.append(f"{left_out} groups with fewer than {LEAST_SEGMENTS} segments were left out")

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs, LeftOut, Poses, Run
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady.holds import Hold, HoldRules, find_holds
 
 Floats = NDArray[np.float64]
@@ -47,9 +48,9 @@ class SteadyPath:
         """Commanded distance [m]."""
         return float(np.hypot(*self.command[:2]) * self.times[-1])
 
-    def core(self) -> _core.SteadySegment:
+    def core(self) -> _thesis.SteadySegment:
         """Return the core's segment."""
-        return _core.SteadySegment(_core.BodyTwist(*self.command), self.times, self.poses)
+        return _thesis.SteadySegment(_core.BodyTwist(*self.command), self.times, self.poses)
 
 
 @dataclass(frozen=True, eq=False)

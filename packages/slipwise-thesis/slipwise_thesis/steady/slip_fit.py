@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import LogError, SettingsError
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady.groups import SteadyGroup
 
 Floats = NDArray[np.float64]
@@ -21,7 +22,7 @@ class SlipFitRules:
 
     length: float = 1.0  # m, L of (4.1): a turn of 1 rad weighs like this distance
     angular: bool = True  # False: translation alone
-    noise: _core.SteadyNoise | None = None  # weigh by the inverse of the covariance that this noise causes
+    noise: _thesis.SteadyNoise | None = None  # weigh by the inverse of the covariance that this noise causes
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,7 @@ class FitComparison:
         return next(curve for curve in self.curves if curve.name == name)
 
 
-def fit_slip(group: SteadyGroup, rules: SlipFitRules = SlipFitRules()) -> _core.SlipRateFit:
+def fit_slip(group: SteadyGroup, rules: SlipFitRules = SlipFitRules()) -> _thesis.SlipRateFit:
     """Fit the slip rates of one group. For overlapping segments, multiply the covariance by `group.overlap`.
 
     Raises:
@@ -63,10 +64,10 @@ def fit_slip(group: SteadyGroup, rules: SlipFitRules = SlipFitRules()) -> _core.
         and not np.isfinite([rules.noise.psd, rules.noise.start, rules.noise.pose]).all()
     ):
         raise SettingsError("a variance is not finite", where="noise", advice="give zero or more")
-    settings = _core.SlipRateSettings()
+    settings = _thesis.SlipRateSettings()
     settings.length, settings.angular, settings.noise = rules.length, rules.angular, rules.noise
     try:
-        return _core.fit_slip_rates(group.core(), settings)
+        return _thesis.fit_slip_rates(group.core(), settings)
     except ValueError as error:
         raise LogError(str(error), where=group.name) from error
 
@@ -91,7 +92,7 @@ def compare_fits(group: SteadyGroup, *, length: float = 1.0, points: int = 31) -
         ("translation", translation.slip),
         ("three channels", full.slip),
     ):
-        left = np.concatenate([_core.steady_residuals(s, slip).T for s in group.core()])
+        left = np.concatenate([_thesis.steady_residuals(s, slip).T for s in group.core()])
         curves.append(_curve(name, left, slip_path(group, slip, times), length))
     coefficients = _polynomial(group)
     powers = np.column_stack((times, times**2))
@@ -109,7 +110,7 @@ def compare_fits(group: SteadyGroup, *, length: float = 1.0, points: int = 31) -
 
 def slip_path(group: SteadyGroup, slip: Floats, times: Floats) -> Floats:
     """Return where the group's command with constant slip rates [3] leads at `times` [K], [K, 3]."""
-    return np.array(_core.steady_path(slipped_twist(group, slip), times))
+    return np.array(_thesis.steady_path(slipped_twist(group, slip), times))
 
 
 def slipped_twist(group: SteadyGroup, slip: Floats) -> _core.BodyTwist:

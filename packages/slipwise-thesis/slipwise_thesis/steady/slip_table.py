@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from slipwise import _core
 from slipwise.errors import LogError
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady.groups import SteadyGroup
 from slipwise_thesis.steady.noise import LEAST_SEGMENTS, NoiseRules, fit_group_noise
 from slipwise_thesis.steady.slip_fit import SlipFitRules, fit_slip
@@ -53,7 +53,7 @@ def _row(group: SteadyGroup, rules: SlipFitRules) -> SlipRow:
     return SlipRow(group.v, group.curvature, group.omega, len(group), _triple(np.array(fit.slip)), sigma, bar)
 
 
-def _noise_of(group: SteadyGroup) -> _core.SteadyNoise | None:
+def _noise_of(group: SteadyGroup) -> _thesis.SteadyNoise | None:
     """Return the group's own noise, None where too few or duplicate segments do not tell it."""
     if len(group) < LEAST_SEGMENTS:
         return None

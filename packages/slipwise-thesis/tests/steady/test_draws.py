@@ -9,6 +9,7 @@ from steady_paths import NOISE, PSD, START
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady import DrawRules, draw_paths
 
 TWIST = _core.BodyTwist(0.5, 0.0, 0.25)
@@ -19,17 +20,17 @@ NOTHING = np.zeros(3)
     ("start", "process", "noise"),
     [
         (True, True, NOISE),
-        (True, False, _core.SteadyNoise(NOTHING, START, NOTHING)),
-        (False, True, _core.SteadyNoise(PSD, NOTHING, NOTHING)),
+        (True, False, _thesis.SteadyNoise(NOTHING, START, NOTHING)),
+        (False, True, _thesis.SteadyNoise(PSD, NOTHING, NOTHING)),
     ],
 )
 def test_terminal_spread_is_that_of_the_variance_equation(
-    start: bool, process: bool, noise: _core.SteadyNoise
+    start: bool, process: bool, noise: _thesis.SteadyNoise
 ) -> None:
     drawn = draw_paths(
         TWIST, NOISE, seed=1, rules=DrawRules(count=2000, start=start, process=process, period=0.1)
     )
-    expected = _core.steady_covariance(TWIST, np.array([3.0]), noise)
+    expected = _thesis.steady_covariance(TWIST, np.array([3.0]), noise)
     factor = np.linalg.inv(np.linalg.cholesky(expected))
     white = factor @ np.cov(drawn.poses[:, -1].T) @ factor.T
     np.testing.assert_allclose(white, np.eye(3), atol=0.15)
@@ -37,7 +38,7 @@ def test_terminal_spread_is_that_of_the_variance_equation(
 
 def test_without_noise_every_segment_is_the_steady_path_from_the_start() -> None:
     drawn = draw_paths(TWIST, NOISE, seed=1, rules=DrawRules(count=2, start=False, process=False))
-    np.testing.assert_allclose(drawn.poses[1], _core.steady_path(TWIST, drawn.times), atol=1e-12)
+    np.testing.assert_allclose(drawn.poses[1], _thesis.steady_path(TWIST, drawn.times), atol=1e-12)
 
 
 def test_the_seed_decides() -> None:
@@ -53,6 +54,6 @@ def test_rules_that_make_no_sense_are_refused() -> None:
         with pytest.raises(SettingsError):
             draw_paths(TWIST, NOISE, seed=1, rules=rules)
     with pytest.raises(SettingsError, match="negative"):
-        draw_paths(TWIST, _core.SteadyNoise(-PSD, START, NOTHING), seed=1)
+        draw_paths(TWIST, _thesis.SteadyNoise(-PSD, START, NOTHING), seed=1)
     with pytest.raises(SettingsError, match="not finite"):
-        draw_paths(TWIST, _core.SteadyNoise(PSD, START * np.nan, NOTHING), seed=1)
+        draw_paths(TWIST, _thesis.SteadyNoise(PSD, START * np.nan, NOTHING), seed=1)

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from steady_paths import PSD, START, drawn_group
 
-from slipwise import _core
 from slipwise.errors import LogError, SettingsError
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady import NoiseRules, fit_group_noise
 
 TRUTH = np.concatenate((PSD, START))
 
 
-def stacked(noise: _core.SteadyNoise) -> np.ndarray:
+def stacked(noise: _thesis.SteadyNoise) -> np.ndarray:
     return np.concatenate((noise.psd, noise.start))
 
 
@@ -24,13 +24,13 @@ def test_noise_and_start_are_covered_over_seeds_and_fisher_beats_the_thesis() ->
     seeds = 40
     errors = {}
     covered = np.zeros(6)
-    for objective in (_core.NoiseObjective.Fisher, _core.NoiseObjective.Thesis):
+    for objective in (_thesis.NoiseObjective.Fisher, _thesis.NoiseObjective.Thesis):
         rows = []
         for seed in range(seeds):
             found = fit_group_noise([drawn_group(seed=seed)], NoiseRules(objective=objective))
             error = stacked(found.noise) - TRUTH
             rows.append(error)
-            if objective == _core.NoiseObjective.Fisher:
+            if objective == _thesis.NoiseObjective.Fisher:
                 covered += np.abs(error) < 3.0 * np.sqrt(np.diag(found.covariance))
         errors[objective.name] = np.sqrt(np.mean(np.array(rows) ** 2, axis=0))
     assert np.all(covered >= seeds - 3)
@@ -39,8 +39,8 @@ def test_noise_and_start_are_covered_over_seeds_and_fisher_beats_the_thesis() ->
 
 def test_both_centres_agree_where_the_curve_fits() -> None:
     group = drawn_group(seed=7, count=200)
-    mean = stacked(fit_group_noise([group], NoiseRules(centre=_core.ScatterCentre.Mean)).noise)
-    curve = stacked(fit_group_noise([group], NoiseRules(centre=_core.ScatterCentre.Curve)).noise)
+    mean = stacked(fit_group_noise([group], NoiseRules(centre=_thesis.ScatterCentre.Mean)).noise)
+    curve = stacked(fit_group_noise([group], NoiseRules(centre=_thesis.ScatterCentre.Curve)).noise)
     np.testing.assert_allclose(mean, curve, rtol=0.15)
 
 

@@ -11,6 +11,7 @@ import pytest
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.logs import Inputs, Poses, Run
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady import HoldRules, PathRules, SteadyPaths, cut_paths
 
 RULES = PathRules(settle=0.0, least_distance=0.0)
@@ -19,7 +20,7 @@ RULES = PathRules(settle=0.0, least_distance=0.0)
 def steady_run(v: float, omega: float, seconds: float) -> Run:
     """A circle from a start that is far from the origin; the yaw as measured, wrapped."""
     t = np.arange(round(seconds / 0.1) + 1) * 0.1
-    path = _core.steady_path(_core.BodyTwist(v, 0.0, omega), t)
+    path = _thesis.steady_path(_core.BodyTwist(v, 0.0, omega), t)
     start = _core.Pose2(3.0, -2.0, 2.5)
     world = np.array([_core.compose(start, _core.Pose2(*pose)).vector() for pose in path.tolist()])
     yaw = np.arctan2(np.sin(world[:, 2]), np.cos(world[:, 2]))
@@ -43,7 +44,7 @@ def test_segments_are_disjoint_and_start_at_the_origin() -> None:
     for path in paths:
         np.testing.assert_array_equal(path.poses[0], np.zeros(3))
         np.testing.assert_allclose(
-            path.poses, _core.steady_path(_core.BodyTwist(1.0, 0.0, 0.5), path.times), atol=1e-12
+            path.poses, _thesis.steady_path(_core.BodyTwist(1.0, 0.0, 0.5), path.times), atol=1e-12
         )
         assert path.overlap == 1.0
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from steady_paths import NOISE, QUIET, SLIP, drawn_group
 
-from slipwise import _core
 from slipwise.errors import LogError, SettingsError
+from slipwise_thesis import _thesis
 from slipwise_thesis.steady import SlipFitRules, compare_fits, fit_slip
 
 
@@ -58,9 +58,9 @@ def test_noise_and_points_that_make_no_sense_are_refused() -> None:
     group = drawn_group(seed=3, count=3)
     nothing = np.zeros(3)
     with pytest.raises(SettingsError, match="not finite"):
-        fit_slip(group, SlipFitRules(noise=_core.SteadyNoise(np.full(3, np.nan), nothing, nothing)))
+        fit_slip(group, SlipFitRules(noise=_thesis.SteadyNoise(np.full(3, np.nan), nothing, nothing)))
     with pytest.raises(LogError, match="not positive definite"):
-        fit_slip(group, SlipFitRules(noise=_core.SteadyNoise(nothing, nothing, nothing)))
+        fit_slip(group, SlipFitRules(noise=_thesis.SteadyNoise(nothing, nothing, nothing)))
     with pytest.raises(SettingsError, match="at least two"):
         compare_fits(group, points=1)
 
