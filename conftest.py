@@ -10,6 +10,11 @@ from pathlib import Path
 import pytest
 from reporting.browser import Browser, find_browser
 
+# Small matrices are slower on several threads, whose waiting takes a busy processor from other tests.
+# The libraries read this when NumPy is first imported, which is later; processes that tests start inherit it.
+for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(_variable, "1")
+
 _NO_DATA = "SLIPWISE_DATA is not set: no real logs"
 
 

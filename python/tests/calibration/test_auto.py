@@ -29,10 +29,10 @@ def basis_of(truth: str) -> _core.Basis:
 
 @cache
 def errors(truth: str) -> dict[str, np.ndarray]:
-    """Mean position and heading error after 5 s, of every basis and of their average, over three drives."""
+    """Mean position and heading error after 5 s, of every basis and of their average, over two drives."""
     options = EvaluationOptions(methods=(*AUTO_BASES, "auto"), horizons=(5.0,))
     total = dict.fromkeys((*AUTO_BASES, "auto"), np.zeros(2))
-    for seed in (3, 4, 5):
+    for seed in (3, 4):
         drive = Drive(seconds=240.0, seed=seed, basis=basis_of(truth), alpha=TRUTHS[truth])
         result = evaluate(simulated_log(drive), input="wheel", options=options)
         for score in result.scores:

@@ -168,11 +168,11 @@ def test_evaluate_shows_every_method_at_every_horizon(slipwise: Slipwise, drive_
         "--horizons",
         "1,2",
     )
-    result = slipwise("evaluate", drive_csv, *arguments)
+    result = slipwise("evaluate", drive_csv, *arguments, "--json", "scores.json")
     assert (result.code, result.err) == (0, "")
     for head in ("After 1 s, from commands", "After 2 s, from commands", "too optimistic", "batch †"):
         assert head in result.out
-    document = slipwise("evaluate", drive_csv, *arguments, "--json", "-").json
+    document = json.loads(Path("scores.json").read_text())
     found = {(score["method"], score["horizon"]) for score in document["scores"]}
     assert found == {(m, h) for m in ("none", "vendor", "edd-2", "batch", "auto") for h in (1.0, 2.0)}
 

@@ -46,7 +46,7 @@ def test_it_is_the_algorithm_of_table_5_1_with_its_errata() -> None:
 @pytest.mark.parametrize("kernel", ["rbf", "matern"])
 def test_it_follows_a_known_surface(kernel: str) -> None:
     surface = GaussianProcessSurface(options=GaussianProcessOptions(kernel=kernel))  # type: ignore[arg-type]
-    surface.fit(draw(200, 2))
+    surface.fit(draw(120, 2))
     error = surface.predict(*AT).mean - true_slip(*AT)
     assert (np.abs(error) < [0.02, 0.02, 0.04]).all()
     assert len(surface.kernels) == 3
