@@ -271,7 +271,11 @@ class MotionLearner(Measurements, RememberedSurfaces):
         """Take what a whole log shows beside the measurements that are pushed from it."""
         unknown_after = self._settings.segment.unknown_after
         self._of_log = contradictions_of_log(log, self._input, unknown_after)
-        self._clocks_compared = log.clocks_compared
+        self.know_clocks(compared=log.clocks_compared)
+
+    def know_clocks(self, *, compared: bool) -> None:
+        """Take whether stamps were compared with the times of arrival: a delay beyond 1 s is then real."""
+        self._clocks_compared = compared
 
     def contradictions(self) -> tuple[Contradiction, ...]:
         """Return what shows that poses and inputs cannot both be right, of all that was pushed."""

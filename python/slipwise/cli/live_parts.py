@@ -166,7 +166,13 @@ def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) 
 
 
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
-    from slipwise.live.ros_roles import find_roles, only_positions, source_topics, with_oriented_imu
+    from slipwise.live.ros_roles import (
+        find_roles,
+        only_positions,
+        source_topics,
+        with_oriented_imu,
+        without_headings,
+    )
     from slipwise.live.ros_transport import CueTopics, RosTransport
     from slipwise.live.wires.make_wire import make_wire
     from slipwise.live.wires.options import WireOptions
@@ -184,8 +190,9 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         say(f"learning from {input_name}s; the node is /{table.node}")
         if only_positions(roles):
             say("satellite fixes without an IMU: positions only, headings are courses of the path")
+        positions = only_positions(roles) or table.positions or without_headings(wire, roles, say)
         cues = CueTopics(table.override_topic, table.surface_topic)
-        transport = RosTransport(wire, roles, options, name=table.node, cues=cues)
+        transport = RosTransport(wire, roles, options, name=table.node, cues=cues, headed=not positions)
     except BaseException:
         wire.close()
         raise
@@ -193,7 +200,7 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         transport,
         input_name,
         "live",
-        positions=only_positions(roles),
+        positions=positions,
         sources=source_topics(roles),
         gyro_alone=roles.pose is None,
     )

@@ -52,6 +52,11 @@ class Feed:
         """Unknown."""
         return False
 
+    @property
+    def clocks_compared(self) -> bool:
+        """Not compared: samples arrive when they are asked for."""
+        return False
+
     def close(self) -> None:
         """Stop where it is."""
         self._stopped.set()

@@ -177,6 +177,7 @@ class LiveNode:
 
     def _judge(self, t: float, *, last: bool = False) -> None:
         parts = self._parts
+        parts.learning.learner.know_clocks(compared=parts.transport.clocks_compared)
         if parts.learning.judge(t, last=last):
             self._publish_model(t)
             self._parameters = parameters_now(parts.learning, parts.applied)

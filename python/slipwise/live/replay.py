@@ -51,7 +51,7 @@ class Replay(Feed):
         for run in drive:
             _refuse_forces(run)
         super().__init__(self._paced(drive, rate, label))
-        self._wheels = has_wheels(drive)
+        self._wheels, self._clocks_compared = has_wheels(drive), log.clocks_compared
         self._sources = source_names(run.run for run in drive)
 
     @property
@@ -63,6 +63,11 @@ class Replay(Feed):
     def wheels(self) -> bool:
         """Whether some run has them."""
         return self._wheels
+
+    @property
+    def clocks_compared(self) -> bool:
+        """As the log says."""
+        return self._clocks_compared
 
     def _paced(self, drive: tuple[PreparedRun, ...], rate: float, label: str | None) -> Iterator[Sample]:
         for place, run in enumerate(drive):

@@ -8,20 +8,21 @@ import queue
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 from slipwise.live.cdr_reader import reader_of
 from slipwise.live.one_rotation import rotation_of
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.wire import RosWire
-from slipwise.logs.messages import IMU, IMU_VALUES, NAV_SAT_FIX, TF
+from slipwise.logs.messages import IMU, IMU_VALUES, NAV_SAT_FIX, POSE_VALUES, TF, Values
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import NONE, Topic
 from slipwise.logs.topics import NOTHING_YET, Roles, choose_topics, weigh_topics
 
 LOOK_EVERY = 0.25  # s
 SETTLED = 1.5  # s for which what is guessed must stay the same: discovery takes its time
-HEARD_WITHIN = 2.0  # s for which a message of an IMU is waited for
-_LISTENED_TO = 3  # messages of an IMU, of which one with an orientation is enough
+HEARD_WITHIN = 2.0  # s for which a message with a rotation is waited for
+_LISTENED_TO = 3  # messages, of which one with a rotation is enough
 SAY_AFTER = 3.0  # s without the topics, after which it is said what is waited for
 
 
@@ -75,22 +76,45 @@ def with_oriented_imu(wire: RosWire, roles: Roles, say: Callable[[str], None]) -
     """
     if roles.imu is None or roles.pose is None or roles.pose.type != NAV_SAT_FIX:
         return roles
+    rotated = _has_rotation(wire, roles.imu, IMU_VALUES[IMU])
+    if rotated is False:
+        say(f"{roles.imu.name} has no orientation: its yaw rates are used")
+        return replace(roles, imu=None)
+    if rotated is None:
+        say(f"{roles.imu.name} says nothing yet: headings wait for it")
+    return roles
+
+
+def without_headings(wire: RosWire, roles: Roles, say: Callable[[str], None]) -> bool:
+    """Say whether the first poses have no rotation: they are positions, as `calibrate` takes them.
+
+    Args:
+        wire: brings its messages.
+        roles: that were chosen.
+        say: called with what was found.
+    """
+    if roles.pose is None or roles.pose.type == NAV_SAT_FIX:
+        return False
+    kind = POSE_VALUES[roles.pose.type]
+    rotated = _has_rotation(wire, roles.pose, lambda message: kind(message)[3:7])
+    if rotated is False:
+        say(f"the quaternions of {roles.pose.name} are no rotations: positions only")
+    return rotated is False
+
+
+def _has_rotation(wire: RosWire, topic: Topic, values: Callable[[Any], Values]) -> bool | None:
+    """Say whether one of the first messages has a rotation; None where too few come in time."""
     found = queue.SimpleQueue[bool]()
-    read, values = reader_of(IMU, ros_types()), IMU_VALUES[IMU]
+    read = reader_of(topic.type, ros_types())
 
     def take(payload: bytes) -> None:
         with contextlib.suppress(Exception):  # what cannot be read says nothing; the transport says so
             found.put(rotation_of(*values(read(payload))) is not None)
 
-    wire.subscribe(roles.imu.name, IMU, take)
+    wire.subscribe(topic.name, topic.type, take)
     with contextlib.suppress(queue.Empty):
-        for _ in range(_LISTENED_TO):
-            if found.get(timeout=HEARD_WITHIN):
-                return roles
-        say(f"{roles.imu.name} has no orientation: its yaw rates are used")
-        return replace(roles, imu=None)
-    say(f"{roles.imu.name} says nothing yet: headings wait for it")
-    return roles
+        return any(found.get(timeout=HEARD_WITHIN) for _ in range(_LISTENED_TO))
+    return None
 
 
 def only_positions(roles: Roles) -> bool:

@@ -171,8 +171,11 @@ class _SideSpeeds:
         return (angles[0] - last[1]) / (t - last[0]), (angles[1] - last[2]) / (t - last[0])
 
 
-def to_pose(kind: str, options: LogOptions) -> ToPose:
-    """Return what makes a pose of a message of type `kind` and its stamp [s]; not of satellite fixes."""
+def to_pose(kind: str, options: LogOptions, *, headed: bool = True) -> ToPose:
+    """Return what makes a pose of a message of type `kind` and its stamp [s]; not of satellite fixes.
+
+    Unless poses are `headed`, one whose quaternion is no rotation is a position: its yaw is NaN.
+    """
     values, offset = POSE_VALUES[kind], options.pose_yaw_offset
     late = late_by(options)
 
@@ -180,10 +183,15 @@ def to_pose(kind: str, options: LogOptions) -> ToPose:
         x, y, _, *rest = values(message)
         qx, qy, qz, qw, var_x, var_y, var_yaw = rest
         angles = rotation_of(qx, qy, qz, qw)
-        if angles is None:
-            raise ValueError(f"the quaternion ({qx:g}, {qy:g}, {qz:g}, {qw:g}) is no rotation")
-        roll, pitch, yaw = angles
         std_xy, std_yaw = deviation(var_x, var_y), deviation(var_yaw)
+        if angles is None and headed:
+            raise ValueError(
+                f"the quaternion ({qx:g}, {qy:g}, {qz:g}, {qw:g}) is no rotation; where no pose has one, "
+                "--set live.positions=true uses the positions alone"
+            )
+        if angles is None:
+            return Pose(t + late, x, y, math.nan, std_xy, frame=message.header.frame_id)
+        roll, pitch, yaw = angles
         tilt = (roll, pitch) if roll or pitch else (None, None)
         return Pose(t + late, x, y, yaw + offset, std_xy, std_yaw, message.header.frame_id, *tilt)
 

@@ -54,9 +54,10 @@ class RosTransport:
         options: scales and sizes.
         name: of the node.
         cues: topics on which others say what they know.
+        headed: poses have headings; those without are positions otherwise.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 (what it reads, and how)
         self,
         wire: RosWire,
         roles: Roles,
@@ -64,9 +65,11 @@ class RosTransport:
         *,
         name: str,
         cues: CueTopics = _NO_CUES,
+        headed: bool = True,
     ) -> None:
         self._wire, self._roles, self._options = wire, roles, options
         self._name, self._override, self._terrain = name, cues.override, cues.terrain
+        self._headed = headed
         self._messages, self._listeners = RosMessages(name), Listeners(wire.connections)
         self._reading = ros_types()
         self._notices: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -146,6 +149,11 @@ class RosTransport:
         """Whether there is a topic with them."""
         return self._roles.wheel is not None
 
+    @property
+    def clocks_compared(self) -> bool:
+        """Whether headers were compared with the times of arrival."""
+        return self._stamps.compared
+
     def close(self) -> None:
         """Leave the graph."""
         if not self._closed:
@@ -181,7 +189,7 @@ class RosTransport:
             self._take(roles.gyro.name, IMU, to_gyro, on_sample)
         elif roles.pose is not None:
             kind = roles.pose.type
-            converters.append((roles.pose.name, kind, to_pose(kind, options)))
+            converters.append((roles.pose.name, kind, to_pose(kind, options, headed=self._headed)))
         for other in roles.others:
             fix = FixPoses(options, headed=False).take_fix if other.type == NAV_SAT_FIX else None
             convert = fix or to_pose(other.type, options)

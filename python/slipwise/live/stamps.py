@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from slipwise.logs.clock_steps import BACK, ENOUGH
-from slipwise.logs.header_clock import apart_words, clock_between, is_apart, shift_words
+from slipwise.logs.header_clock import LATENCY, apart_words, clock_between, is_apart, shift_words
 
 LOOKED_AT = 200  # messages with a header, of late
 _STEADY = 0.3  # s that delays differ by; more is another rate of the clock
@@ -63,6 +63,11 @@ class Stamps:
             self._say(f"{apart_words(main.lead, 'this computer')}: {dated}")
         return arrived + main.lead
 
+    @property
+    def compared(self) -> bool:
+        """Whether headers were compared with the times of arrival: a long delay is then one of the robot."""
+        return bool(self._clocks) and (self.simulated or all(each.known for each in self._clocks.values()))
+
     def _main(self) -> _Lead | None:
         return self._clocks.get(self._first) or next(iter(self._clocks.values()), None)
 
@@ -87,6 +92,7 @@ class _Lead:
         self._odd: list[float] = []  # that do not go with these: several in a row are a clock that was set
         self.lead = 0.0  # s; of a clock that runs at another rate the newest
         self.steady = False  # the clock runs at the rate of this computer's
+        self.known = False  # by less than a sensor may take
 
     def take(self, lead: float) -> None:
         if self._leads and abs(lead - float(np.median(self._leads))) > BACK:
@@ -98,5 +104,6 @@ class _Lead:
         else:
             self._leads.append(lead)
         self._odd = []
-        self.steady = len(self._leads) >= _FEWEST and max(self._leads) - min(self._leads) < _STEADY
+        enough, spread = len(self._leads) >= _FEWEST, max(self._leads) - min(self._leads)
+        self.steady, self.known = enough and spread < _STEADY, enough and spread < LATENCY
         self.lead = max(self._leads) if self.steady or len(self._leads) < _FEWEST else lead

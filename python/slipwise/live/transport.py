@@ -40,5 +40,9 @@ class Transport(Protocol):
     def wheels(self) -> bool:
         """Whether wheel speeds are known to come, beside commands if there are some."""
 
+    @property
+    def clocks_compared(self) -> bool:
+        """Whether the stamps of each stream were compared with the times at which they arrived."""
+
     def close(self) -> None:
         """Stop; may be called twice."""

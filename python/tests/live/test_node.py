@@ -10,11 +10,13 @@ from pathlib import Path
 import pytest
 from sample_models import make_model, named
 from sample_slopes import Hills, hilly_log
-from scripted_node import SLIP, driven, run_node
+from scripted_node import SLIP, Scripted, driven, run_node
 
+from slipwise.calibration import Settings
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.prepared_run import prepare_run
+from slipwise.live.build import build_node
 from slipwise.live.outputs import ModelText, Output, Validity
 from slipwise.live.replay import samples_of
 from slipwise.live.validity import judged
@@ -76,3 +78,24 @@ def test_terms_of_gravity_are_tried_where_poses_are_said_to_have_an_attitude(att
     built, _ = run_node(list(samples_of(run)), LiveTable(attitude=attitude), "command")
     model = built.learning.learner.model(limits=False)
     assert any(".gy" in name for name in model.parameters) == attitude
+
+
+class Compared(Scripted):
+    """Knows when each sample arrived."""
+
+    @property
+    def clocks_compared(self) -> bool:
+        return True
+
+
+@pytest.mark.parametrize("transport", [Scripted, Compared])
+def test_a_delay_of_seconds_is_real_where_stamps_were_compared_with_arrival(
+    transport: type[Scripted],
+) -> None:
+    delivers = transport(driven(replace(SLIP, delay=1.5), "command"))
+    built = build_node(delivers, "command", Settings(), run="test")
+    built.node.run()
+    assert built.learning.model is not None
+    verdict = built.learning.model.content.verdict
+    assert verdict.good is (transport is Compared)
+    assert ("their clocks are apart" in verdict.sentence) is (transport is Scripted)

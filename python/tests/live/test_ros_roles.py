@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from slipwise.live.ros_roles import only_positions, source_topics, with_oriented_imu
+from slipwise.live.ros_roles import only_positions, source_topics, with_oriented_imu, without_headings
 from slipwise.live.ros_transport import CueTopics, RosTransport
 from slipwise.live.samples import Gyro, Pose, Sample
 from slipwise.live.wires.ros_types import ros_types
@@ -103,6 +103,30 @@ def test_an_imu_without_an_orientation_gives_no_headings(oriented: bool) -> None
     assert only_positions(found) is not oriented
     assert found.gyro == GYRO
     assert said == ([] if oriented else ["/imu has no orientation: its yaw rates are used"])
+
+
+def lidar(w: float) -> bytes:
+    q, at = (
+        made("geometry_msgs/msg/Quaternion", 0.0, 0.0, 0.0, w),
+        made("geometry_msgs/msg/Point", 1.0, 2.0, 0.0),
+    )
+    message = made(POSE_STAMPED, header(), made("geometry_msgs/msg/Pose", at, q))
+    return bytes(STORE.serialize_cdr(message, POSE_STAMPED))
+
+
+@pytest.mark.parametrize("w", [0.0, 1.0])
+def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float) -> None:
+    said: list[str] = []
+    wire = Wire({"/lidar": [lidar(w)] * 3})
+    positions = without_headings(wire, roles(LIDAR), said.append)
+    assert positions is (w == 0.0)
+    assert said == (["the quaternions of /lidar are no rotations: positions only"] if positions else [])
+    transport = RosTransport(wire, roles(LIDAR), LogOptions(), name="slipwise", headed=not positions)
+    found: list[Sample] = []
+    transport.subscribe(found.append)
+    poses = [pose for pose in found if isinstance(pose, Pose)]
+    assert [(pose.x, pose.y) for pose in poses] == [(1.0, 2.0)] * 3
+    assert all(np.isnan(pose.yaw) is np.bool_(positions) for pose in poses)
 
 
 def samples_of(taken: Roles, messages: dict[str, list[bytes]]) -> list[Sample]:

@@ -159,6 +159,20 @@ def test_a_small_offset_of_clocks_is_seen_live_as_in_a_bag(ahead: float) -> None
     assert said[1].startswith("the clock of /odom is not that of the poses")
 
 
+def test_clocks_are_compared_once_the_headers_of_every_topic_follow_their_arrival() -> None:
+    stamps = Stamps("/pose")
+    assert not stamps.compared
+    heard(stamps, "/pose", 1.7)
+    assert stamps.compared
+    stamps.of(Made(header=header(1004.0)), 1005.0, "/cmd")  # too few to tell
+    assert not stamps.compared
+    heard(stamps, "/cmd", 0.0, 1005.0)
+    assert stamps.compared
+    for k in range(50):  # stamps that follow no clock
+        stamps.of(Made(header=header(1010.0)), 1010.0 + 0.2 * k, "/odom")
+    assert not stamps.compared
+
+
 def test_a_clock_that_is_set_dates_what_has_no_header_anew() -> None:
     stamps, no_header = Stamps("/pose"), twist(1.0, 0.0, 0.0)
     heard(stamps, "/pose", 0.0)

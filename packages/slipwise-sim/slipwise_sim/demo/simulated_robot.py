@@ -80,6 +80,11 @@ class SimulatedRobot:
         """They come beside commands."""
         return True
 
+    @property
+    def clocks_compared(self) -> bool:
+        """Not compared: samples arrive when they are asked for."""
+        return False
+
     def close(self) -> None:
         """Stop where it is."""
         self._stopped.set()
