@@ -110,10 +110,10 @@ DESTROYING = (
     "evaluate drive.csv --model m.yaml --report m.yaml",
     "evaluate drive.csv --settings s.toml --json s.toml",
     "live --replay drive.csv -o drive.csv",
-    "live --replay drive.csv --record drive.csv",
+    "live --replay drive.csv --set live.record=drive.csv",
     "live --replay drive.csv --results drive.csv",
     "live --replay drive.csv --model m.yaml -o m.yaml",
-    "live --replay drive.csv --memory m.yaml -o m.yaml",
+    "live --replay drive.csv --memory --model m.yaml -o m.yaml",
     "live --replay drive.csv --settings s.toml -o s.toml",
     "excite --area 8x8 --vehicle husky --model m.yaml --json m.yaml",
     "fleet drive.csv --settings s.toml --json s.toml",
@@ -146,7 +146,7 @@ TWICE = (
     "calibrate drive.csv -o x --report x",
     "calibrate drive.csv -o x --json x",
     "evaluate drive.csv --predictions x --report x",
-    "live --replay drive.csv -o x --record x",
+    "live --replay drive.csv -o x --set live.record=x",
     "convert drive.csv -o x.csv --json x.csv",
     "inspect drive.csv --excite x --json x",
     "convert drive.csv -o x.parquet --card --json x.card.yaml",
@@ -160,15 +160,18 @@ TWICE = (
 
 
 @pytest.mark.usefixtures("files")
-@pytest.mark.parametrize("line", [*DESTROYING, *TWICE])
-def test_every_command_refuses_and_leaves_everything_as_it_was(slipwise: Slipwise, line: str) -> None:
+def test_every_command_refuses_and_leaves_everything_as_it_was(
+    slipwise: Slipwise, subtests: pytest.Subtests
+) -> None:
     before = {path: path.read_bytes() for path in Path().iterdir()}
-    arguments = [*line.split(), *(ROUTE if line.startswith("plan") else ())]
-    result = slipwise(*arguments)
-    assert (result.code, result.out) == (2, "")
-    expected = "two results would be one file" if line in TWICE else "this would replace what is read"
-    assert result.line.startswith(expected)
-    assert {path: path.read_bytes() for path in Path().iterdir()} == before
+    for line in (*DESTROYING, *TWICE):
+        with subtests.test(line=line):
+            arguments = [*line.split(), *(ROUTE if line.startswith("plan") else ())]
+            result = slipwise(*arguments)
+            assert (result.code, result.out) == (2, "")
+            expected = "two results would be one file" if line in TWICE else "this would replace what is read"
+            assert result.line.startswith(expected)
+            assert {path: path.read_bytes() for path in Path().iterdir()} == before
 
 
 def test_every_path_that_a_command_takes_is_known_here() -> None:
