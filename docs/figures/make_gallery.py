@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import os
 import re
@@ -19,7 +20,7 @@ from slipwise.files import write_whole
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 WIDTH, TALLEST = 860, 3000  # [px]
-COLOURS, LARGEST = 64, 150_000  # of a picture's palette; [bytes]
+COLOURS, LARGEST = 160, 150_000  # of a picture's palette; [bytes]
 HEAD = "Does the learned model help?"
 #: Hides all of a report but one section; the page allows styles, and no script but its own.
 ALONE = """<style>
@@ -112,8 +113,9 @@ def pictures_of(shown: Shown, data: Path, browser: str, folder: Path) -> None:
     """Calibrate one log and write its pictures into `folder`."""
     with tempfile.TemporaryDirectory() as name:
         scratch = Path(name)
-        runs = ("-o", str(scratch / "model.yaml"), "--runs", str(scratch / "runs"))
-        code = run(["calibrate", str(data / f"{shown.log}.csv.gz"), *shown.options, *runs])
+        log = str(data.resolve() / f"{shown.log}.csv.gz")
+        with contextlib.chdir(scratch):  # the report names the model as it was written
+            code = run(["calibrate", log, *shown.options, "-o", "model.yaml", "--runs", "runs"])
         if code != shown.code:
             sys.exit(f"{shown.log}: exit code {code}, docs/results.md says {shown.code}")
         report = (scratch / "runs/latest/report.html").read_text(encoding="utf-8")
