@@ -48,7 +48,7 @@ TEST_CASE("saved and loaded at random places, a learner goes on to the same byte
       moved.start_run();
       for (std::size_t i = 0; i < run.commands.size(); ++i) {
         push_both(run, i, silent, moved);
-        if (random() % 16 == 0) {
+        if (random() % 64 == 0) {
           const std::string saved = moved.save();
           REQUIRE(saved == silent.save());
           moved = MotionLearner::load(saved);
