@@ -84,7 +84,7 @@ std::pair<std::ptrdiff_t, std::ptrdiff_t> ByteReader::read_shape(int rows, int c
   const std::uint64_t high = read_64();
   const std::uint64_t wide = read_64();
   const auto fits = [](std::uint64_t size, int fixed) {
-    return fixed < 0 ? std::in_range<std::ptrdiff_t>(size) : size == static_cast<std::uint64_t>(fixed);
+    return fixed < 0 ? std::in_range<std::ptrdiff_t>(size) : std::cmp_equal(size, fixed);
   };
   if (!fits(high, rows) || !fits(wide, cols)) {
     refuse("malformed: a matrix of another size");
