@@ -104,6 +104,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
         self._remember = remember
         self._start: Model | None = None  # that it began with
         self._of_log: tuple[Contradiction, ...] = ()  # what only a whole log shows
+        self._log_known = False
         self._clocks_compared = False
 
     def start_run(self, name: str) -> None:
@@ -270,8 +271,13 @@ class MotionLearner(Measurements, RememberedSurfaces):
     def know_log(self, log: Log) -> None:
         """Take what a whole log shows beside the measurements that are pushed from it."""
         unknown_after = self._settings.segment.unknown_after
-        self._of_log = contradictions_of_log(log, self._input, unknown_after)
+        self._of_log, self._log_known = contradictions_of_log(log, self._input, unknown_after), True
         self.know_clocks(compared=log.clocks_compared)
+
+    def know_stream(self, found: tuple[Contradiction, ...]) -> None:
+        """Take what a stream shows beside what the learner keeps; a whole log shows it better."""
+        if not self._log_known:
+            self._of_log = found
 
     def know_clocks(self, *, compared: bool) -> None:
         """Take whether stamps were compared with the times of arrival: a delay beyond 1 s is then real."""

@@ -7,7 +7,7 @@ from slipwise.calibration.judgement import FEWEST_WINDOWS
 from slipwise.calibration.prepared_run import INPUT_NAMES, WindowSet, collect_windows, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.errors import LogError
-from slipwise.logs.command_timeout import silent_commands
+from slipwise.logs.command_timeout import stops_of
 from slipwise.logs.log import Log
 
 NEEDED = 2 * FEWEST_WINDOWS  # segments, half of which are held out
@@ -52,7 +52,7 @@ def silence(windows: WindowSet) -> tuple[str, str] | None:
     if windows.drive[0].input_name != "command":
         return None
     pairs = [(run.inputs, run.run.poses) for run in windows.drive]
-    return silent_commands(pairs, windows.unknown_after)
+    return stops_of(pairs).words(windows.unknown_after)
 
 
 def _segments(log: Log, input_name: str, length: float, settings: Settings) -> int:

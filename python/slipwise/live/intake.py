@@ -9,12 +9,14 @@ from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.live.clock_watch import Clock, ClockWatch, Stamped
 from slipwise.live.command_ends import CommandEnds
+from slipwise.live.command_stops import SAID_EVERY, LiveCommandStops
 from slipwise.live.gates import Gates
 from slipwise.live.move_adviser import Turning
 from slipwise.live.said import Said
 from slipwise.live.samples import Command, DriveStart, Gyro, Pose, SurfaceCue, Twist, Wheels
 from slipwise.live.surface_watch import SurfaceWatch
 from slipwise.logs.clock_steps import set_back_words
+from slipwise.logs.contradiction import Contradiction
 
 MOST_FRAMES = 1000  # whose names are kept
 
@@ -34,9 +36,12 @@ class Intake:
         self._ends = CommandEnds(command_timeout)
         self._learner, self._gates, self._said = learner, gates, said
         self._input = Command if input_name == "command" else Wheels
+        looks = input_name == "command" and command_timeout is None
+        self._stops = LiveCommandStops(learner.settings.segment.unknown_after) if looks else None
         self._clock = ClockWatch()
         self.surfaces = SurfaceWatch(learner, said)
         self.turning = Turning()
+        self._looked_at = math.inf  # s, when it was looked how commands end
         self._frames: dict[str, int] = {}
         self._next_frame = 0
         self.newest_input: Twist | None = None
@@ -75,11 +80,17 @@ class Intake:
             self._gates.restart()
             self.surfaces.start_run(f"after the clock was set at {self._clock.newest:.3f} s")
             self._ends.restart()
+            if self._stops is not None:
+                self._stops.restart()
         for each in taken:
             for zero in self._ends.before(each):
                 self._push(zero)
             self._gates.take(each)
             self._push(each)
+
+    def contradictions(self) -> tuple[Contradiction, ...]:
+        """Return what a stream shows that the learner does not keep: how commands end."""
+        return () if self._stops is None else self._stops.found()
 
     def events(self) -> list[Event]:
         """Return what the learner has to say since the last call; what it rejected is counted."""
@@ -93,6 +104,8 @@ class Intake:
         self._clock.restart()
         self._ends.restart()
         self._gates.restart()
+        if self._stops is not None:
+            self._stops.restart()
 
     def _push(self, sample: Stamped) -> None:
         learner = self._learner
@@ -100,6 +113,8 @@ class Intake:
             self.newest_input = sample
             self.turning.take(sample)
         if isinstance(sample, Command):
+            if self._stops is not None:
+                self._stops.take_command(sample)
             learner.push_command(sample.t, sample.v, sample.omega, sample.vy)
         elif isinstance(sample, Wheels):
             learner.push_wheels(sample.t, sample.v, sample.omega, sample.vy)
@@ -126,7 +141,20 @@ class Intake:
         if pose.roll is not None and pose.pitch is not None:
             self._learner.push_attitude(pose.t, pose.roll, pose.pitch)
             self._say_mounting(pose.t)
-        self._learn(pose, self._frame_number(pose.frame), learned=learned)
+        number = self._frame_number(pose.frame)
+        if self._stops is not None:
+            self._stops.take_pose(pose, number)
+            self._say_stops(pose.t)
+        self._learn(pose, number, learned=learned)
+
+    def _say_stops(self, t: float) -> None:
+        """Say where commands come so rarely that little or nothing can be learned of them."""
+        if self._stops is None or self._looked_at <= t < self._looked_at + SAID_EVERY:
+            return
+        self._looked_at = t
+        words = self._stops.words()
+        if words:
+            self._said.begins(t, "commands", words)
 
     def _say_mounting(self, t: float) -> None:
         """Say how the sensor of roll and pitch is mounted, where that is another than was said."""

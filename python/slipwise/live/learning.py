@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learner_answers import Event
@@ -13,6 +14,7 @@ from slipwise.live.applied import start_value, values_of
 from slipwise.live.outputs import Validity
 from slipwise.live.said import Said
 from slipwise.live.validity import ModelValidity
+from slipwise.logs.contradiction import Contradiction
 from slipwise.models import Model
 
 OFTEN, SELDOM = 2.0, 5.0  # s between judgements: a long drive has many predictions to judge
@@ -39,6 +41,7 @@ class Learning:
         self.judgement: Judgement | None = None
         self.nis: float | None = None
         self.segments = 0
+        self.of_stream: Callable[[], tuple[Contradiction, ...]] = tuple  # what the learner does not keep
         self._said = said
         self._new = False  # whether something was learned since the last judgement
         self._compared = learner.compared  # how much of the driving was looked at for contradictions by then
@@ -79,6 +82,7 @@ class Learning:
             return False
         self._new, self._judged, self._compared = False, t, compared
         before = self.validity.whole
+        self.learner.know_stream(self.of_stream())
         try:
             self.model, self.judgement = self.learner.judged_model(limits=False)
         except SlipwiseError as problem:

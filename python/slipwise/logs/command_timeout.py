@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 
+from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.log import Bools, Floats, Inputs, Log, Poses
 from slipwise.logs.motion_windows import wrapped
 
@@ -17,6 +18,7 @@ _AGE = 0.1  # s, of the steps in which a command's age is checked
 _OLDEST = 6.0  # s after a command
 _SLOWEST = 0.05  # m/s or rad/s; less is no command to move
 _FEWEST = 10  # pieces of motion in a step of ages
+_MOST_GAPS = 100_000  # between commands
 _LEFT = 0.35  # of a command at most, where it has ended
 _LENGTHS, _DELAYS = np.arange(0.1, 4.01, 0.05), np.arange(0.0, 0.61, 0.05)  # s, tried
 _LAGS = np.array((0.03, 0.1, 0.2, 0.3, 0.5, 0.8))  # s, tried
@@ -58,52 +60,76 @@ def _ended(commands: Inputs, seconds: float, last: float) -> tuple[Inputs, int]:
     return Inputs(t[order], v, vy, omega), len(zeros)
 
 
-def silent_commands(pairs: Sequence[tuple[Inputs, Poses]], unknown_after: float) -> tuple[str, str] | None:
-    """Say how rarely commands come and what the robot does between them, and what to do about it.
+class CommandStops:
+    """What robots do of a command at each age of it, and how far commands are apart: sums of all pieces."""
 
-    Args:
-        pairs: commands and poses of each run.
-        unknown_after: an input is unknown once it is older than this [s].
-    """
-    every = [np.diff(commands.t)[_moves(commands)[:-1]] for commands, _ in pairs]
-    gaps = np.concatenate([np.empty(0), *every])
-    if len(gaps) < _FEWEST:
-        return None
-    usual = float(np.median(gaps))
-    stop = stops_after(pairs)
-    if stop is not None and stop < usual:
-        return (
-            f"commands come every {usual:.2g} s, and the robot stops about {stop:.2g} s after each",
-            f"Give --command-timeout {stop:.2g}: a command ends after so long where it is not repeated.",
-        )
-    if usual <= unknown_after:
-        return None
-    advice = (
-        f"Raise unknown_after under [segment] to {np.ceil(usual + 1.0):g} where the robot holds a command "
-        "until the next; where it stops by itself, give --command-timeout."
-    )
-    return f"commands come every {usual:.2g} s and count as unknown after {unknown_after:g} s", advice
+    def __init__(self) -> None:
+        count = int(_OLDEST / _AGE)
+        self._given, self._done, self._pieces = np.zeros(count), np.zeros(count), np.zeros(count)
+        self._gaps: Floats = np.empty(0)
 
-
-def stops_after(pairs: Iterable[tuple[Inputs, Poses]]) -> float | None:
-    """Return how long after a command the robot stops though no other came [s]; None where it goes on."""
-    count = int(_OLDEST / _AGE)
-    given, done, pieces = np.zeros(count), np.zeros(count), np.zeros(count)
-    for commands, poses in pairs:
+    def add(self, commands: Inputs, poses: Poses) -> None:
+        """Add commands and poses of one run, or of a piece of it."""
         for asked, measured, age in _motion(commands, poses):
             kept = (age >= 0.0) & (age < _OLDEST) & (asked > _SLOWEST)
-            step = (age[kept] / _AGE).astype(int)
-            for total, part in ((given, asked[kept]), (done, measured[kept]), (pieces, np.ones(len(step)))):
-                total += np.bincount(step, part, count)
-    known = np.flatnonzero(pieces >= _FEWEST)
-    if len(known) < 3:
-        return None
-    left: Floats = np.asarray(done[known] / given[known], dtype=np.float64)
-    top = int(np.argmax(left))
-    after = np.flatnonzero(left[top:] < 0.5 * left[top])
-    if not len(after) or float(np.median(left[top + after[0] :][-3:])) > _LEFT * left[top]:
-        return None
-    return _pulse(np.asarray(_AGE * (known + 0.5), dtype=np.float64), left)
+            step, ones = (age[kept] / _AGE).astype(int), np.ones(int(kept.sum()))
+            for total, part in (
+                (self._given, asked[kept]),
+                (self._done, measured[kept]),
+                (self._pieces, ones),
+            ):
+                total += np.bincount(step, part, len(total))
+        self._gaps = np.concatenate((self._gaps, np.diff(commands.t)[_moves(commands)[:-1]]))[-_MOST_GAPS:]
+
+    def after(self) -> float | None:
+        """Return how long after a command the robot stops though no other came [s]; None where it goes on."""
+        known = np.flatnonzero(self._pieces >= _FEWEST)
+        if len(known) < 3:
+            return None
+        left: Floats = np.asarray(self._done[known] / self._given[known], dtype=np.float64)
+        top = int(np.argmax(left))
+        after = np.flatnonzero(left[top:] < 0.5 * left[top])
+        if not len(after) or float(np.median(left[top + after[0] :][-3:])) > _LEFT * left[top]:
+            return None
+        return _pulse(np.asarray(_AGE * (known + 0.5), dtype=np.float64), left)
+
+    def words(self, unknown_after: float) -> tuple[str, str] | None:
+        """Say how rarely commands come and what the robot does between them, and what to do about it.
+
+        Args:
+            unknown_after: an input is unknown once it is older than this [s].
+        """
+        if len(self._gaps) < _FEWEST:
+            return None
+        usual, stop = float(np.median(self._gaps)), self.after()
+        if stop is not None and stop < usual:
+            return (
+                f"commands come every {usual:.2g} s, and the robot stops about {stop:.2g} s after each",
+                f"Give --command-timeout {stop:.2g}: a command ends after so long where it is not repeated.",
+            )
+        if usual <= unknown_after:
+            return None
+        advice = (
+            f"Raise unknown_after under [segment] to {np.ceil(usual + 1.0):g} where the robot holds a "
+            "command until the next; where it stops by itself, give --command-timeout."
+        )
+        return f"commands come every {usual:.2g} s and count as unknown after {unknown_after:g} s", advice
+
+    def contradiction(self, unknown_after: float) -> Contradiction | None:
+        """Say where the robot stops between commands that are taken to be held until `unknown_after` [s]."""
+        stop = self.after()
+        if stop is None or stop + REPEAT > unknown_after:
+            return None
+        sentence, advice = self.words(unknown_after) or ("", "")
+        return Contradiction("command-timeout", sentence, (advice,)) if sentence else None
+
+
+def stops_of(pairs: Iterable[tuple[Inputs, Poses]]) -> CommandStops:
+    """Return the sums of commands and poses of each run."""
+    stops = CommandStops()
+    for commands, poses in pairs:
+        stops.add(commands, poses)
+    return stops
 
 
 def _pulse(age: Floats, left: Floats) -> float:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from slipwise import _core
-from slipwise.logs.command_timeout import REPEAT, silent_commands, stops_after
+from slipwise.logs.command_timeout import stops_of
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.course_heading import course_heading
 from slipwise.logs.driven_windows import driven_windows
@@ -153,11 +153,7 @@ def _ended_commands(log: Log, unknown_after: float) -> Contradiction | None:
     pairs = [
         (run.commands, run.poses) for run in log.runs if run.commands is not None and _has(run, "command")
     ]
-    stop = stops_after(pairs)
-    if stop is None or stop + REPEAT > unknown_after:
-        return None
-    sentence, advice = silent_commands(pairs, unknown_after) or ("", "")
-    return Contradiction("command-timeout", sentence, (advice,)) if sentence else None
+    return stops_of(pairs).contradiction(unknown_after)
 
 
 def _has(run: Run, input_name: str) -> bool:

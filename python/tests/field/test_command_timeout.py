@@ -3,16 +3,21 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from sample_bags import TWIST, Bag
 from sample_field import FieldDrive, field_drive, field_path, learned, recorder, share_errors, write_poses
+from scripted_node import Scripted
 
 from slipwise.calibration import calibrate, make_settings
+from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.errors import LogError, SettingsError
+from slipwise.live.build import build_node
 from slipwise.live.command_ends import WAIT, CommandEnds
+from slipwise.live.replay import samples_of
 from slipwise.live.samples import Command, Pose
 from slipwise.logs import LogOptions, open_log
 
@@ -72,6 +77,25 @@ def test_live_ends_commands_at_the_stamps_of_the_log(tmp_path: Path) -> None:
     until = before.poses.t[-1] - WAIT
     np.testing.assert_array_equal(stamps, after.commands.t[: len(stamps)])
     assert after.commands.t[len(stamps) :].min(initial=np.inf) >= until
+
+
+@pytest.mark.parametrize("unknown_after", [0.5, 3.0])
+def test_a_watchdog_is_found_live_too(unknown_after: float) -> None:
+    log = open_log(field_path("cmd_timeout.mcap"))
+    run = log.runs[0]
+    assert run.commands is not None
+    transport = Scripted(samples_of(PreparedRun(0, run, run.commands, None)))
+    settings = make_settings({"segment": {"unknown_after": unknown_after}})
+    built = build_node(transport, "command", settings, run="live")
+    built.node.run()
+    words = r".* and the robot stops about (0.5\d?) s after each. Give --command-timeout \1"
+    assert any(re.match(words, text) for text in transport.said)
+    model = built.learning.model
+    assert model is None or not model.content.verdict.good
+    if unknown_after > 1.3:
+        wanted = calibrate(log, settings=settings).verdict
+        assert model is not None
+        assert model.content.verdict.sentence == wanted.sentence
 
 
 def test_an_impossible_timeout_is_refused() -> None:

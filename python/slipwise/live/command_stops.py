@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Finds live that a robot's watchdog ends commands that are not repeated, as it is found of a whole log."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from slipwise.live.samples import Command, Pose
+from slipwise.logs.command_timeout import CommandStops
+from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.log import Inputs, Poses
+
+WAIT = 1.0  # s; a command may come so much later than a pose of its stamp
+_AT_ONCE = 200  # poses
+SAID_EVERY = 60.0  # s between looks
+_MOST = 20_000  # that wait where no command comes
+
+
+class LiveCommandStops:
+    """Adds commands and poses with headings piece by piece.
+
+    Args:
+        unknown_after: an input is unknown once it is older than this [s].
+    """
+
+    def __init__(self, unknown_after: float) -> None:
+        self._unknown_after, self._stops = unknown_after, CommandStops()
+        self._commands: list[tuple[float, float, float, float]] = []
+        self._poses: list[tuple[float, float, float, float, float]] = []
+
+    def take_command(self, command: Command) -> None:
+        """Take a command; one that is not later than the last says nothing."""
+        row = (command.t, command.v, command.vy, command.omega)
+        if all(map(math.isfinite, row)) and (not self._commands or row[0] > self._commands[-1][0]):
+            self._commands.append(row)
+
+    def take_pose(self, pose: Pose, frame: int) -> None:
+        """Take a pose in the frame of a number."""
+        row = (pose.t, pose.x, pose.y, pose.yaw, float(frame))
+        if all(map(math.isfinite, row)) and (not self._poses or row[0] > self._poses[-1][0]):
+            self._poses.append(row)
+        if len(self._poses) >= _AT_ONCE and self._poses[-_AT_ONCE][0] < self._poses[-1][0] - WAIT:
+            self._add()
+
+    def restart(self) -> None:
+        """Another recording begins, or the clock was set."""
+        self._commands.clear()
+        self._poses.clear()
+
+    def words(self) -> str:
+        """Say how rarely commands come and what to do about it; empty where they come often enough."""
+        return " ".join(f"{each.rstrip('.')}." for each in self._stops.words(self._unknown_after) or ())
+
+    def found(self) -> tuple[Contradiction, ...]:
+        """Say where the robot stops between commands that are taken to be held."""
+        self._add()
+        found = self._stops.contradiction(self._unknown_after)
+        return () if found is None else (found,)
+
+    def _add(self) -> None:
+        """Add all until `WAIT` before the newest pose; the last pose and the last two commands stay."""
+        if len(self._poses) < 2 or not self._commands:
+            del self._poses[:-_MOST]
+            return
+        until = self._poses[-1][0] - WAIT
+        ready = [row for row in self._poses if row[0] <= until]
+        known = [row for row in self._commands if row[0] <= until]
+        if len(ready) < 2 or not known:
+            return
+        commands, poses = (np.ascontiguousarray(np.array(rows).T) for rows in (known, ready))
+        t, x, y, yaw, frame = poses
+        self._stops.add(Inputs(*commands), Poses(t, x, y, yaw, frame.astype(np.int64)))
+        self._poses = self._poses[len(ready) - 1 :]
+        self._commands = self._commands[len(known) - 1 :]
