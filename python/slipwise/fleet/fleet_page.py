@@ -21,7 +21,17 @@ from slipwise.fleet.vehicle_numbers import logs_of, types_apart
 from slipwise.models.parameter_table import physical_name
 from slipwise.number_text import DASH
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
-from slipwise.reporting.markup import bullets, details, escape, missing, number, paragraph, scrolling, table
+from slipwise.reporting.markup import (
+    bullets,
+    details,
+    escape,
+    grid,
+    missing,
+    number,
+    paragraph,
+    scrolling,
+    table,
+)
 from slipwise.reporting.page import Part, page_of
 from slipwise.reporting.thinning import CURVE_POINTS, thinned
 
@@ -84,10 +94,7 @@ def fleet_page(
 
 def _charts(figures: Sequence[str]) -> str:
     """Show the first charts and fold the others away."""
-    first, rest = (
-        f'<div class="grid">{"".join(some)}</div>' if some else ""
-        for some in (figures[:SHOWN_AT_ONCE], figures[SHOWN_AT_ONCE:])
-    )
+    first, rest = (grid(some) if some else "" for some in (figures[:SHOWN_AT_ONCE], figures[SHOWN_AT_ONCE:]))
     return first + (details(f"{len(figures) - SHOWN_AT_ONCE} more parameters", rest) if rest else "")
 
 

@@ -14,7 +14,7 @@ from slipwise.excitation import Excitation, Lesson, command_inputs, drawn_robots
 from slipwise.excitation.design import HORIZON
 from slipwise.excitation.moves import command_periods
 from slipwise.excitation.robots import PERIOD
-from slipwise.reporting.figure import Figure, axis, numbers
+from slipwise.reporting.figure import LEGEND_ON_TOP, Figure, axis, map_axes, numbers, step_lines
 from slipwise.reporting.markup import bullets, legend, number, table
 from slipwise.reporting.page import Part, page_of
 
@@ -124,10 +124,7 @@ def _map(drive: Excitation) -> Figure:
         key="area",
         label="the area with the paths of drawn robots",
         traces=[*lines, start],
-        layout={
-            "xaxis": axis("x [m]", range=[left, right], constrain="domain"),
-            "yaxis": axis("y [m]", range=[bottom, top], scaleanchor="x", constrain="domain"),
-        },
+        layout=map_axes(left, right, bottom, top),
         height=HIGHEST,
         aspect=float((top - bottom) / (right - left)),
     )
@@ -146,25 +143,9 @@ def _line(x: NDArray[np.float64], y: NDArray[np.float64], colour: str, width: fl
 
 def _commands(drive: Excitation) -> Figure:
     commands = command_inputs(drive)
-    steps = {"type": "scatter", "mode": "lines", "x": numbers(commands.t)}
-    hv = {"shape": "hv"}
-    return Figure(
-        key="commands",
-        label="commanded speed and yaw rate over time",
-        traces=[
-            steps | {"y": numbers(commands.v), "name": "speed [m/s]", "line": hv | {"color": POSITION}},
-            steps | {"y": numbers(commands.omega), "name": "yaw rate [rad/s]", "line": hv | {"color": YAW}},
-        ],
-        layout={
-            "xaxis": axis("time [s]"),
-            "yaxis": axis("speed [m/s], yaw rate [rad/s]"),
-            **_LEGEND_ON_TOP,
-        },
-        height=280,
+    return step_lines(
+        commands.t, {"speed [m/s]": (commands.v, POSITION), "yaw rate [rad/s]": (commands.omega, YAW)}
     )
-
-
-_LEGEND_ON_TOP = {"showlegend": True, "legend": {"orientation": "h", "y": 1.12}, "margin": {"t": 40}}
 
 
 def _worst(lessons: Sequence[Lesson]) -> Figure:
@@ -180,7 +161,7 @@ def _worst(lessons: Sequence[Lesson]) -> Figure:
         layout={
             "xaxis": axis("moves driven"),
             "yaxis": axis("standard deviation [rad], [m]", type="log"),
-            **_LEGEND_ON_TOP,
+            **LEGEND_ON_TOP,
         },
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +16,7 @@ from slipwise.reporting.markup import escape
 
 DIGITS = 6  # significant digits of every number in a figure
 TOP_BAR_MARGIN = {"t": 42}  # px above a plot for a colour bar
+LEGEND_ON_TOP = {"showlegend": True, "legend": {"orientation": "h", "y": 1.12}, "margin": {"t": 40}}
 
 _AXIS = {
     "gridcolor": "#e6eaef",
@@ -78,6 +79,40 @@ def axis(title: str, *, small: bool = False, **options: object) -> dict[str, Any
     """Return an axis with a title; the unit belongs into the title."""
     size = {"size": 11} if small else {"size": 13}
     return {**_AXIS, "title": {"text": title, "font": size, "standoff": 3 if small else 6}, **options}
+
+
+def step_lines(t: ArrayLike, curves: Mapping[str, tuple[ArrayLike, str]]) -> Figure:
+    """Return commands over time, each held until the next: curves by their name with unit, and colours."""
+    steps = {"type": "scatter", "mode": "lines", "x": numbers(t)}
+    return Figure(
+        key="commands",
+        label="commanded speed and yaw rate over time",
+        traces=[
+            steps | {"y": numbers(values), "name": name, "line": {"shape": "hv", "color": colour}}
+            for name, (values, colour) in curves.items()
+        ],
+        layout={"xaxis": axis("time [s]"), "yaxis": axis(", ".join(curves)), **LEGEND_ON_TOP},
+        height=280,
+    )
+
+
+def map_axes(left: float, right: float, bottom: float, top: float) -> dict[str, Any]:
+    """Return axes of a map of this extent [m], with equal scales."""
+    return {
+        "xaxis": axis("x [m]", range=[left, right], constrain="domain"),
+        "yaxis": axis("y [m]", range=[bottom, top], scaleanchor="x", constrain="domain"),
+    }
+
+
+def vertical_lines(
+    at: Iterable[float], colour: str, *, dash: str = "solid", width: float = 1.5, yref: str = "paper"
+) -> list[dict[str, Any]]:
+    """Return shapes: a vertical line from 0 to 1, of the plot or of its axis, at each place."""
+    line = {"color": colour, "width": width, "dash": dash}
+    return [
+        {"type": "line", "xref": "x", "yref": yref, "x0": x, "x1": x, "y0": 0, "y1": 1, "line": line}
+        for x in at
+    ]
 
 
 def top_colour_bar(**options: object) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
+from slipwise.reporting.figure import Figure, axis, baseline_label, numbers, vertical_lines
 from slipwise.reporting.markup import legend
 from slipwise.reporting.palette import ALARM_COLOUR, BAND, MEASURED, surface_colour, transparent
 from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
@@ -61,8 +61,8 @@ def strip_html(strip: GroundStrip, *, title: str) -> str:
         layout={
             "xaxis": axis(title),
             "yaxis": axis("probability [-]", range=[0.0, 1.12], tickvals=[0, 0.5, 1]),
-            "shapes": _lines(strip.alarms, ALARM_COLOUR, "solid")
-            + _lines(strip.boundaries, "#9aa5b1", "dot"),
+            "shapes": vertical_lines(strip.alarms, ALARM_COLOUR, yref="y")
+            + vertical_lines(strip.boundaries, "#9aa5b1", dash="dot", yref="y"),
         },
         height=200,
         caption=thinning_note(len(strip.x), CURVE_POINTS),
@@ -102,11 +102,3 @@ def _marks(strip: GroundStrip) -> dict[str, Any]:
         "marker": {"symbol": "triangle-down", "size": 9, "color": MEASURED},
         "hovertemplate": "%{text}<br>%{x:.1f} s<extra></extra>",
     }
-
-
-def _lines(at: Sequence[float], colour: str, dash: str) -> list[dict[str, Any]]:
-    line = {"color": colour, "width": 1.5, "dash": dash}
-    return [
-        {"type": "line", "xref": "x", "yref": "y", "x0": x, "x1": x, "y0": 0, "y1": 1, "line": line}
-        for x in at
-    ]

@@ -56,6 +56,11 @@ def scrolling(html: str) -> str:
     return f'<div class="scroll" tabindex="0">{html}</div>'
 
 
+def grid(html: Iterable[str], *, kind: str = "grid") -> str:
+    """Return pieces of HTML side by side; kinds are grid, fine-grid and wide-grid."""
+    return f'<div class="{kind}">{"".join(html)}</div>'
+
+
 def legend(entries: Iterable[tuple[str, str, str]]) -> str:
     """Return a line of (label, colour, kind of mark), kinds being line, dash, dot, mark, ring and area."""
     items = (

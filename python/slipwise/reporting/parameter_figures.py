@@ -14,7 +14,7 @@ from slipwise.models.parameter_table import physical_name, physical_parameters
 from slipwise.models.schema import Parameter
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
-from slipwise.reporting.markup import details, legend, number, paragraph
+from slipwise.reporting.markup import details, grid, legend, number, paragraph
 from slipwise.reporting.palette import LEARNED_STROKE, transparent
 from slipwise.reporting.thinning import SMALL_POINTS, thinned, thinning_note
 from slipwise.reporting.timeline import Timeline, with_breaks
@@ -86,12 +86,13 @@ def parameter_figures(
         f"Ordered by how much of the motion they explain{more}. {thinning_note(len(course.t), SMALL_POINTS)}"
     )
     rest = figures[_SHOWN_AT_ONCE:]
-    folded = details(f"{len(rest)} more parameters", _grid(rest)) if rest else ""
-    return legend(keys) + _grid(figures[:_SHOWN_AT_ONCE]) + folded + paragraph(note.strip(), kind="note")
-
-
-def _grid(figures: Sequence[str]) -> str:
-    return f'<div class="fine-grid">{"".join(figures)}</div>'
+    folded = details(f"{len(rest)} more parameters", grid(rest, kind="fine-grid")) if rest else ""
+    return (
+        legend(keys)
+        + grid(figures[:_SHOWN_AT_ONCE], kind="fine-grid")
+        + folded
+        + paragraph(note.strip(), kind="note")
+    )
 
 
 def _order(parameter: Parameter) -> tuple[bool, float]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from slipwise.planning.trajectory import pose_text
-from slipwise.reporting.figure import Figure, axis, numbers
+from slipwise.reporting.figure import Figure, map_axes, numbers, step_lines
 from slipwise.reporting.markup import bullets, legend, number
 from slipwise.reporting.page import Part, page_of
 from slipwise.reporting.plan_drawing import (
@@ -108,10 +108,7 @@ def _map(plan: Plan) -> Figure:
         key="plan",
         label="map with the swept path and its uncertainty",
         traces=[cells, *swept, *spread, path, goal],
-        layout={
-            "xaxis": axis("x [m]", range=[left, right], constrain="domain"),
-            "yaxis": axis("y [m]", range=[bottom, top], scaleanchor="x", constrain="domain"),
-        },
+        layout=map_axes(left, right, bottom, top),
         height=HIGHEST,
         aspect=rows / columns,
     )
@@ -131,21 +128,4 @@ def _line(curve: Any, colour: str, *, fill: bool = False, width: float = 1.5) ->
 
 def _commands(plan: Plan) -> Figure:
     t, v, omega = plan.route.trajectory.commands.T
-    steps = {"type": "scatter", "mode": "lines", "x": numbers(t)}
-    return Figure(
-        key="commands",
-        label="commanded speed and yaw rate over time",
-        traces=[
-            steps | {"y": numbers(v), "name": "speed [m/s]", "line": {"shape": "hv", "color": PATH}},
-            steps
-            | {"y": numbers(omega), "name": "yaw rate [rad/s]", "line": {"shape": "hv", "color": SPREAD}},
-        ],
-        layout={
-            "xaxis": axis("time [s]"),
-            "yaxis": axis("speed [m/s], yaw rate [rad/s]"),
-            "showlegend": True,
-            "legend": {"orientation": "h", "y": 1.12},
-            "margin": {"t": 40},
-        },
-        height=280,
-    )
+    return step_lines(t, {"speed [m/s]": (v, PATH), "yaw rate [rad/s]": (omega, SPREAD)})

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.logs.log import Log
+from slipwise.reporting.figure import vertical_lines
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -52,11 +53,7 @@ class Timeline:
         starts = self.offset[1:].tolist()
         if len(starts) > _MOST_BOUNDARIES:
             return []
-        line = {"color": "#9aa5b1", "width": 1, "dash": "dot"}
-        return [
-            {"type": "line", "xref": "x", "yref": "paper", "x0": x, "x1": x, "y0": 0, "y1": 1, "line": line}
-            for x in starts
-        ]
+        return vertical_lines(starts, "#9aa5b1", dash="dot", width=1.0)
 
 
 def with_breaks(run: Ints, values: Floats) -> Floats:

@@ -12,8 +12,8 @@ from slipwise.calibration.result import History
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, physical_parameters
 from slipwise.number_text import estimate_text
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
-from slipwise.reporting.markup import MINUS, details, legend, missing, paragraph, table
+from slipwise.reporting.figure import Figure, axis, baseline_label, numbers, vertical_lines
+from slipwise.reporting.markup import MINUS, details, grid, legend, missing, paragraph, table
 from slipwise.reporting.palette import ALARM_COLOUR, Stroke, stroke_of, transparent
 from slipwise.reporting.parameter_figures import parameter_figures
 from slipwise.reporting.thinning import SMALL_POINTS, thinned
@@ -97,11 +97,7 @@ def _alarms(contents: Contents, history: History) -> str:
 def _alarm_marks(timeline: Timeline, history: History) -> list[dict[str, Any]]:
     """Return a vertical line where each change of terrain was found."""
     at = np.flatnonzero(history.alarm)
-    line = {"color": ALARM_COLOUR, "width": 1.5}
-    return [
-        {"type": "line", "xref": "x", "yref": "paper", "x0": x, "x1": x, "y0": 0, "y1": 1, "line": line}
-        for x in timeline.at(history.run[at], history.t[at]).tolist()
-    ]
+    return vertical_lines(timeline.at(history.run[at], history.t[at]).tolist(), ALARM_COLOUR)
 
 
 def _parameters(contents: Contents, history: History) -> str:
@@ -141,9 +137,9 @@ def _weights(contents: Contents, history: History) -> str:
         drawn.append(_weights_figure(contents, history, names, (strokes, history.structure_weight)))
         heavier = history.structures[int(np.argmax(history.structure_weight[-1]))]
         notes.append(f"Predictions are those of the heavier way, at the end {heavier}, shown above.")
-    figures = "".join(f"<div>{figure}</div>" for figure in drawn)
+    figures = grid((f"<div>{figure}</div>" for figure in drawn), kind="wide-grid")
     notes_html = paragraph(" ".join(notes), kind="note")
-    return (f'<div class="wide-grid">{figures}</div>' if drawn else "") + notes_html
+    return (figures if drawn else "") + notes_html
 
 
 def _weights_figure(

@@ -11,7 +11,7 @@ import numpy as np
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import PLAIN, SIMPLE, Contents
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
-from slipwise.reporting.markup import legend, missing
+from slipwise.reporting.markup import grid, legend, missing
 from slipwise.reporting.method_names import label
 from slipwise.reporting.palette import stroke_of
 from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
@@ -43,9 +43,7 @@ class ErrorsSection:
             _figure(contents, found, "position", "error [m]"),
             _figure(contents, found, "heading", "error [°]"),
         )
-        return (
-            legend(keys) + '<div class="wide-grid">' + "".join(figure.html() for figure in figures) + "</div>"
-        )
+        return legend(keys) + grid((figure.html() for figure in figures), kind="wide-grid")
 
 
 def _kind(part: Predictions, contents: Contents) -> str:

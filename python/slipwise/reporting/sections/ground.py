@@ -12,7 +12,7 @@ from slipwise.calibration.result import History
 from slipwise.models.schema import SurfaceSection
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.ground_strip import UNNAMED, GroundStrip, strip_html
-from slipwise.reporting.markup import missing, paragraph, table
+from slipwise.reporting.markup import grid, missing, paragraph, table
 from slipwise.reporting.named_surfaces import named_surfaces
 from slipwise.reporting.slip_place_map import place_maps
 from slipwise.reporting.timeline import Timeline
@@ -53,7 +53,7 @@ def maps_html(figures: list[str]) -> str:
         return missing(
             "The path does not run over the same ground again, so there is no map of slip by place."
         )
-    return paragraph(PLACES, kind="explanation") + f'<div class="grid">{"".join(figures)}</div>'
+    return paragraph(PLACES, kind="explanation") + grid(figures)
 
 
 def bank_table(surfaces: Iterable[SurfaceSummary | SurfaceSection]) -> str:

@@ -13,7 +13,7 @@ from slipwise.calibration.statistics import nis_band
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure, axis, numbers
-from slipwise.reporting.markup import legend, missing, paragraph
+from slipwise.reporting.markup import grid, legend, missing, paragraph
 from slipwise.reporting.method_names import label
 from slipwise.reporting.palette import LEARNED_STROKE, MEASURED, transparent
 from slipwise.reporting.thinning import thinned, thinning_note
@@ -58,13 +58,7 @@ class NisSection:
         drawn = [figure for figure in figures if figure is not None]
         if not drawn:
             return missing("No window has a predicted covariance, so its truth cannot be judged.")
-        return (
-            _answer(contents)
-            + _legend()
-            + '<div class="wide-grid">'
-            + "".join(figure.html() for figure in drawn)
-            + "</div>"
-        )
+        return _answer(contents) + _legend() + grid((figure.html() for figure in drawn), kind="wide-grid")
 
 
 def _answer(contents: Contents) -> str:

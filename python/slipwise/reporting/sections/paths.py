@@ -17,7 +17,7 @@ from slipwise.evaluation.result import Predictions
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
 from slipwise.reporting.contents import PLAIN, Contents
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
-from slipwise.reporting.markup import details, legend, missing, number, paragraph
+from slipwise.reporting.markup import details, grid, legend, missing, number, paragraph
 from slipwise.reporting.method_names import BASELINE, label
 from slipwise.reporting.palette import MEASURED, stroke_of, transparent
 from slipwise.reporting.sections.drive_map import HEIGHT, drive_maps
@@ -44,20 +44,16 @@ class PathsSection:
         maps = [figure.html() for figure in drawn]
         text, paths = _paths(contents)
         first = maps[0] if maps else missing("The log has no measured poses, so there is no map.")
-        shown = _grid([f'<div class="double">{first}</div>', *paths[:_SHOWN_AT_ONCE]])
+        shown = grid([f'<div class="double">{first}</div>', *paths[:_SHOWN_AT_ONCE]], kind="fine-grid")
         folded = _folded((paths[_SHOWN_AT_ONCE:], "paths"), (maps[1:], "maps"))
         return text + shown + folded + (paragraph(note, kind="note") if note else "")
-
-
-def _grid(figures: Sequence[str]) -> str:
-    return f'<div class="fine-grid">{"".join(figures)}</div>'
 
 
 def _folded(*kinds: tuple[Sequence[str], str]) -> str:
     """Fold away the figures that are not shown at once, counted by kind."""
     counted = " and ".join(f"{len(figures)} more {what}" for figures, what in kinds if figures)
     figures = [figure for some, _ in kinds for figure in some]
-    return details(counted, _grid(figures)) if figures else ""
+    return details(counted, grid(figures, kind="fine-grid")) if figures else ""
 
 
 def typical_path(contents: Contents) -> str:
@@ -131,7 +127,8 @@ def _notes(drawn: list[WindowPaths]) -> str:
         text = (
             f"{causal} of {len(drawn)} predicted paths use what was known at their start, others at the end."
         )
-    return paragraph(text, kind="note")
+    ends = "Ellipse and arrow are the scored prediction, which also follows slip that lasts for some seconds."
+    return paragraph(f"{text} {ends}", kind="note")
 
 
 def _figure(

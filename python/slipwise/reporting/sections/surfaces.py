@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from slipwise import _core
 from slipwise.models.model import Model
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure
-from slipwise.reporting.markup import missing
+from slipwise.reporting.markup import grid, missing
 from slipwise.reporting.sections.coverage import coverage_figure
 from slipwise.reporting.slip_figures import CHANNELS, NODES, SlipGrid, contour_map
 
@@ -32,11 +30,8 @@ class SurfacesSection:
         absent = [] if driven else [f"The log has no {name}, so there is no plane of inputs to cover."]
         maps, sentences = _slip(contents.calibration.model)
         shown = [*maps, *([driven] if driven else [])]
-        return _side_by_side(shown) + "".join(missing(text) for text in (*sentences, *absent))
-
-
-def _side_by_side(figures: Sequence[Figure]) -> str:
-    return f'<div class="grid">{"".join(figure.html() for figure in figures)}</div>' if figures else ""
+        drawn = grid(figure.html() for figure in shown) if shown else ""
+        return drawn + "".join(missing(text) for text in (*sentences, *absent))
 
 
 def _slip(model: Model) -> tuple[list[Figure], list[str]]:
