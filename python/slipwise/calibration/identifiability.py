@@ -89,23 +89,23 @@ def timing_words(
     sentences = []
     if motion.dynamics and motion.clock_offset:
         sentences.append(
-            "The delays are those from commands to wheel speeds, with any offset between their clocks."
+            "Delays are from commands to wheel speeds, any offset between their clocks included."
         )
     elif motion.dynamics or motion.delays:
         sentences.append(
-            "The delays are those from commands to poses: that of the drive, and any offset between "
-            "the clocks, which commands and poses alone cannot tell apart."
+            "Delays are from commands to poses, any offset between their clocks included: this log cannot "
+            "separate the two."
         )
         if not wheels_logged:
             how = f"; {wheels_advice}" if wheels_advice else ""
-            sentences.append(f"Wheel speeds in the log would tell them apart{how}.")
+            sentences.append(f"Wheel speeds in the log would{how}.")
     if motion.clock_offset:
         sentences.append(
-            "clock_offset is how much later poses are stamped than the wheel speeds of the same moment. A "
-            "negative value within the time between two wheel speeds comes from their sampling, not a clock."
+            "clock_offset is how much later poses are stamped than wheel speeds. A negative one below the "
+            "period of the wheel speeds comes from their sampling, not from a clock."
         )
         if "clock_offset" in unknown:
-            sentences.append("This drive does not determine it: it stays about where it was before any data.")
+            sentences.append("This drive does not determine it.")
     return " ".join(sentences)
 
 
@@ -183,6 +183,6 @@ _APART: tuple[tuple[Callable[[Confounded], bool], str], ...] = (
         lambda p: (
             p.first.startswith("log_time_constant") and p.second.startswith("log_delay") and _same_channel(p)
         ),
-        "Lag and delay trade places; record poses more often, and change the command in steps",
+        "Lag and delay are hard to separate; record poses more often, and change commands in steps",
     ),
 )

@@ -36,19 +36,17 @@ def limits_advice(search: _core.LimitSearch) -> tuple[str, ...]:
     found = {limit.kind for limit in search.found}
     speed, turn = search.reach[0], search.reach[1]
     if speed.fastest == 0.0 and turn.fastest == 0.0:
-        return ("No limit of the drive shows: it was commanded to stand still.",)
+        return ("No limit of the drive found: it was commanded to stand still.",)
     slowest = tuple(reach if reach > LEAST_DEAD_BAND else 0.0 for reach in (speed.slowest, turn.slowest))
-    kinds = _core.LimitKind
+    kinds, most = _core.LimitKind, _pair(speed.fastest, turn.fastest)
+    steps = _pair(speed.step, turn.step)
     sentences = {
-        kinds.DeadBand: f"No dead-band shows: command less than {_pair(*slowest)} to see one."
+        kinds.DeadBand: f"No dead band found; the smallest commands were {_pair(*slowest)}."
         if any(slowest)
         else "",
-        kinds.Saturation: "No saturation shows: command more than"
-        f" {_pair(speed.fastest, turn.fastest)} to see one.",
-        kinds.SlewRateUp: "No limit of acceleration shows: step from rest by more than"
-        f" {_pair(speed.step, turn.step)} to see one.",
-        kinds.SlewRateDown: "No limit of braking shows: step to rest from more than"
-        f" {_pair(speed.step, turn.step)} to see one.",
+        kinds.Saturation: f"No saturation found; the largest commands were {most}.",
+        kinds.SlewRateUp: f"No acceleration limit found; the largest steps from rest were {steps}.",
+        kinds.SlewRateDown: f"No braking limit found; the largest steps to rest were {steps}.",
     }
     return tuple(sentence for kind, sentence in sentences.items() if sentence and kind not in found)
 
@@ -60,12 +58,12 @@ def doubted_limits(search: _core.LimitSearch, *, wheels_logged: bool) -> tuple[s
     names = ", ".join(f"{_AXES[each.axis]}: {_KINDS[each.kind]}" for each in search.found)
     remedy = "drive longer" if wheels_logged else "record wheel speeds"
     sentence = (
-        f"The drive looks limited ({names}), yet behind these limits nothing is predicted better. They "
-        f"are left out, and lags and delays may stand for what they are not. To tell, {remedy}."
+        f"The drive looks limited ({names}), but these limits do not improve predictions: the model leaves "
+        f"them out, and its lags and delays may contain them. To decide, {remedy}."
     )
     return (sentence,)
 
 
 def _pair(speed: float, turn: float) -> str:
     reached = ((speed, "m/s"), (turn, "rad/s"))
-    return " or ".join(f"{number_text(value, 2)} {unit}" for value, unit in reached if value > 0.0)
+    return " and ".join(f"{number_text(value, 2)} {unit}" for value, unit in reached if value > 0.0)

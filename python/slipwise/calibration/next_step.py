@@ -44,5 +44,5 @@ def after_checking(verdict: Verdict | VerdictSection, model: Path) -> tuple[str,
 
 def _instead(verdict: Verdict | VerdictSection) -> tuple[str, ...]:
     if verdict.advice:
-        return ("Next: do what the lines below say, then calibrate again.",)
-    return ("Next: keep to the commands or wheel speeds as they are; slipwise has nothing to add to them.",)
+        return ("Next: follow the advice below, then calibrate again.",)
+    return ("Next: use commands or wheel speeds as they are; slipwise does not improve on them.",)

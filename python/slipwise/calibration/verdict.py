@@ -18,22 +18,24 @@ from slipwise.calibration.judgement import FEWEST_WINDOWS, LEAST_EXPLAINED, Judg
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.result import Verdict
 from slipwise.logs.contradiction import Contradiction
+from slipwise.models.parameter_table import physical_name
 from slipwise.models.schema import HeldOut
 from slipwise.number_text import count_text, number_text
 
+_MOST_NAMED = 5  # parameters that a sentence names
 _REFUSED = "Do not use this model:"
 _FOLLOWED = {"command": "commands", "wheel": "wheels"}
 POSITIONS_ONLY = (
-    "Only positions were measured: headings are courses of the path, their errors are errors of the course, "
-    "and a side slip that is always the same is not seen."
+    "Only positions were measured: headings are the direction of the path, so heading errors are errors of "
+    "that direction, and a constant side slip cannot be seen."
 )
 YAW_RATES_ONLY = (
-    "Only yaw rates were measured: slip is learned of turns alone, and predicted positions are those that "
-    "the inputs say, along the learned heading."
+    "Only yaw rates were measured: slip is learned of turns alone, and predicted positions follow the inputs "
+    "along the learned heading."
 )
 _CLOCKS = (
-    "Give --pose-clock-offset auto, or the seconds to add to the stamps of the poses. A bag that is not "
-    "converted tells by its headers how far the clocks are apart."
+    "Give --pose-clock-offset auto, or the seconds to add to the stamps of the poses. The headers of the "
+    "original bag show how far the clocks are apart."
 )
 LATEST = 1.0  # s from a command to its first effect; no drive takes longer
 FEW = 20  # held-out segments; a gain that shows in fewer may be chance
@@ -48,7 +50,7 @@ class Identified:
     advice: tuple[str, ...] = ()
     confounded: tuple[Confounded, ...] = ()
     timing: str = ""
-    from_log: str = "the log"  # that the parameters were learned from
+    from_log: str = "this log"  # that the parameters were learned from
     force: str = ""  # what pushes the robot beside its slip
     delay: float = 0.0  # s, the longest from an input to its first effect
 
@@ -142,7 +144,7 @@ def _unexplained(judgement: Judgement, facts: LogFacts) -> str:
     share, least = 100.0 * max(still.explained, 0.0), 100.0 * LEAST_EXPLAINED
     return (
         f"{_REFUSED} the {inputs} do not explain the poses. They explain {share:.0f} % of the motion, a "
-        f"good model {least:.0f} % and more: saying that the robot stands still misses by "
+        f"good model at least {least:.0f} %: standing still misses by "
         f"{number_text(still.motion)} {unit} after {still.horizon:g} s, the model by "
         f"{number_text(still.error)} {unit}."
     )
@@ -156,7 +158,7 @@ def _not_better(judgement: Judgement) -> str:
 def _untrue(judgement: Judgement) -> str:
     if judgement.consistency is None or not judgement.consistency.untrue:
         return ""
-    return f"{_REFUSED} it beats the kinematic baseline, but what it says of its own errors is not true."
+    return f"{_REFUSED} it beats the kinematic baseline, but its uncertainty is not that of its errors."
 
 
 def _too_late(known: Identified, facts: LogFacts) -> str:
@@ -164,7 +166,7 @@ def _too_late(known: Identified, facts: LogFacts) -> str:
         return ""
     return (
         f"{_REFUSED} the poses answer the {_FOLLOWED[facts.input_name]} after {known.delay:.2g} s, later "
-        "than any drive: their clocks are apart."
+        "than any drive: their clocks differ."
     )
 
 
@@ -181,8 +183,8 @@ def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
 
 def _figures(held_out: HeldOut) -> str:
     return (
-        f"The learned model's mean error after {held_out.horizon:g} s is {held_out.position:.3g} m and "
-        f"{held_out.heading:.3g} rad, the kinematic baseline's {held_out.baseline_position:.3g} m and "
+        f"The model misses by {held_out.position:.3g} m and {held_out.heading:.3g} rad after "
+        f"{held_out.horizon:g} s, the kinematic baseline by {held_out.baseline_position:.3g} m and "
         f"{held_out.baseline_heading:.3g} rad ({held_out.segments} held-out segments)."
     )
 
@@ -190,8 +192,8 @@ def _figures(held_out: HeldOut) -> str:
 def _turns(held_out: HeldOut) -> str:
     """The figures of a log without poses."""
     return (
-        f"The learned model's mean heading error after {held_out.horizon:g} s is {held_out.heading:.3g} rad, "
-        f"the kinematic baseline's {held_out.baseline_heading:.3g} rad "
+        f"The model's heading misses by {held_out.heading:.3g} rad after {held_out.horizon:g} s, the "
+        f"kinematic baseline's by {held_out.baseline_heading:.3g} rad "
         f"({held_out.segments} held-out segments)."
     )
 
@@ -200,7 +202,10 @@ def _unknown(known: Identified) -> str:
     count = len(known.not_identifiable)
     if count == 0 or known.parameters == 0:
         return ""
-    return f"{count} of {known.parameters} parameters stay about where they were before {known.from_log}."
+    named = ", ".join(physical_name(name) for name in known.not_identifiable[:_MOST_NAMED])
+    more = f" and {count - _MOST_NAMED} more" if count > _MOST_NAMED else ""
+    which = f"{count} of {known.parameters} parameters could not be learned from {known.from_log}"
+    return f"{which}: {named}{more}."
 
 
 def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
@@ -212,8 +217,8 @@ def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         return (*facts.shortage, *advice)
     if judgement.unexplained:
         advice.append(
-            f"Check that {_FOLLOWED[facts.input_name]} and poses are of one robot and one drive, on one "
-            "clock, in m/s, rad/s, m and rad."
+            f"Check that {_FOLLOWED[facts.input_name]} and poses come from the same robot, drive and clock, "
+            "in m/s, rad/s, m and rad."
         )
     elif judgement.much_worse:
         advice.append(

@@ -199,7 +199,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     content = calibration.model.content
     learned, summary = content.provenance, summarise(calibration.model)
     out.line(
-        f"Learned {content.slip.basis} from {content.input}s: "
+        f"Learned from {content.input}s, basis {content.slip.basis}: "
         f"{count_text(learned.learned_segments, 'segment')}, {learned.learned_seconds:.0f} s of driving."
     )
     show_summary(out, summary)

@@ -61,7 +61,7 @@ def _identified(source: Calibration | Model) -> Identified:
         timing=content.verdict.timing,
         force=content.verdict.force,
         delay=longest_delay(tuple(p.name for p in content.parameters), [p.value for p in content.parameters]),
-        from_log="the log" if calibrated else "the log that they were learned from",
+        from_log="this log" if calibrated else "the log of the model",
     )
 
 

@@ -234,9 +234,9 @@ def _report(out: Output, made: _Made, paths: dict[str, Path]) -> None:
     out.table("Exported", (Column("for", whole=True), Column("parameter"), Column("value")), rows)
     for target, exported in made.files:
         for name, reason in exported.kept.items():
-            out.line(f"left at the tool's own value: {target.name}: {name}: {reason}")
+            out.line(f"{target.name}: {name} not written, its default stays: {reason}")
     for name, reason in made.left_out:
-        out.line(f"left out: {name}: {reason}")
+        out.line(f"{name} skipped: {reason}")
     show_files(out, paths)
 
 

@@ -186,6 +186,9 @@ def _show(out: Output, inspection: Inspection, *, advise: bool) -> None:
         _show_learnability(out, item, advise=advise)
 
 
+_MANY = {"command": "commands", "wheel": "wheel speeds", "pose": "poses"}
+
+
 def _show_survey(out: Output, survey: Survey) -> None:
     """Show every topic or column; the reasons stand below, where they are not cut into pieces."""
     from slipwise.cli.output import Column
@@ -205,7 +208,7 @@ def _show_survey(out: Output, survey: Survey) -> None:
     out.table("Topics" if "topic" in columns[0].head else "Columns", columns, rows)
     for part in survey.parts:
         if part.used_as and part.why:
-            out.line(f"  {part.name} is the {part.used_as}: {part.why}")
+            out.line(f"  {_MANY.get(part.used_as, part.used_as)}: {part.name} ({part.why})")
     reasons: dict[str, list[str]] = {}
     for part in survey.parts:
         if not part.used_as:
@@ -268,6 +271,6 @@ def _show_learnability(out: Output, item: Learnability, *, advise: bool) -> None
     if unknown:
         out.line(f"  not identifiable: {', '.join(unknown)}")
     for entry in item.left_out:
-        out.line(f"  left out: {entry.count} x {entry.reason}, first at {entry.where}")
+        out.line(f"  {entry.count} left out: {entry.reason} (first at {entry.where})")
     for advice in item.advice if advise else ():
         out.line(f"  {advice}")

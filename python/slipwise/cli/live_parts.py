@@ -189,7 +189,7 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         input_name = table.input or ("command" if roles.command is not None else "wheel")
         say(f"learning from {input_name}s; the node is /{table.node}")
         if only_positions(roles):
-            say("satellite fixes without an IMU: positions only, headings are courses of the path")
+            say("satellite fixes without an IMU: positions only, headings are the direction of the path")
         positions = only_positions(roles) or table.positions or without_headings(wire, roles, say)
         cues = CueTopics(table.override_topic, table.surface_topic)
         transport = RosTransport(wire, roles, options, name=table.node, cues=cues, headed=not positions)

@@ -12,7 +12,7 @@ from slipwise.calibration.next_step import verdict_label
 from slipwise.cli.output import Column, Output
 from slipwise.cli.run_folder import killed_runs
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, NEGLIGIBLE
-from slipwise.number_text import estimate_texts, number_text
+from slipwise.number_text import count_text, estimate_texts, number_text
 
 if TYPE_CHECKING:
     from slipwise.calibration import History, Verdict
@@ -51,10 +51,8 @@ def show_alarms(output: Output, history: History) -> None:
         return
     shown = ", ".join(f"{t:.1f} s of run {run}" for run, t in alarms[:_MOST_ALARMS])
     more = f" and {len(alarms) - _MOST_ALARMS} more" if len(alarms) > _MOST_ALARMS else ""
-    times = "once" if len(alarms) == 1 else f"{len(alarms)} times"
-    output.line(
-        f"The terrain seems to change {times}: at {shown}{more}. What was learned before counts less."
-    )
+    changes = count_text(len(alarms), "change")
+    output.line(f"{changes} of terrain found: {shown}{more}. What was learned before counts less.")
 
 
 def show_summary(output: Output, summary: Summary) -> None:
@@ -97,8 +95,8 @@ def show_parameters(output: Output, parameters: Sequence[PhysicalParameter]) -> 
         Column("identified"),
     )
     caption = (
-        f"Identified: the standard deviation is at most {IDENTIFIED_FRACTION:.0%} of the value, or "
-        f"{NEGLIGIBLE:.0%} of the motion in the log, {NEGLIGIBLE:g} s, m or rad where zero means none."
+        f"Identified: std is at most {IDENTIFIED_FRACTION:.0%} of the value; or, where 0 means no effect, at "
+        f"most {NEGLIGIBLE:.0%} of the motion in the log, {NEGLIGIBLE:g} s, m or rad."
     )
     output.table("Parameters", columns, rows, caption=caption)
 
@@ -108,7 +106,7 @@ def show_confounded(output: Output, pairs: Sequence[Confounded]) -> None:
     if pairs:
         shown = ", ".join(map(str, pairs[:_MOST_PAIRS]))
         more = f" and {len(pairs) - _MOST_PAIRS} more pairs" if len(pairs) > _MOST_PAIRS else ""
-        output.line(f"Hard to tell apart (correlation of their errors): {shown}{more}.")
+        output.line(f"Hard to separate (correlation of their errors): {shown}{more}.")
 
 
 def show_killed_runs(output: Output, runs: Path) -> None:

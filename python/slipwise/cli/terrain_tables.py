@@ -102,9 +102,12 @@ def show_labels(out: Output, content: dict[str, Any], classifier: TerrainClassif
     for kind, pool in classifier.pools.items():
         if pool.rejections and share > 0.0:
             cost = rejection_at(pool.rejections, share)
+            cheaper = rejection_at(pool.rejections, 0.5 * share)
+            less = f"; --unknown {0.5 * share:g} makes it {cheaper.known:.0%}"
             out.line(
-                f"Of windows on surfaces that were not trained, {cost.unknown:.0%} are called unknown; "
-                f"so are {cost.known:.0%} of the others ({_SENSORS[kind]}, as estimated in training)."
+                f"With {_SENSORS[kind]}, as estimated in training, {cost.unknown:.0%} of windows on unknown "
+                f"surfaces are called unknown. Price: {cost.known:.0%} of windows on known surfaces are also "
+                f"called unknown{less if cheaper.known < cost.known else ''}."
             )
     if "score" in content:
         named = content["named"]
@@ -119,8 +122,8 @@ def show_labels(out: Output, content: dict[str, Any], classifier: TerrainClassif
     if "not_trained" in content:
         strange = content["not_trained"]
         out.line(
-            f"Of {strange['windows']} windows on surfaces that were not trained, "
-            f"{strange['called_unknown']:.0%} are called unknown."
+            f"{strange['called_unknown']:.0%} of {strange['windows']} windows on untrained surfaces "
+            "are called unknown."
         )
 
 

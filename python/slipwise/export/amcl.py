@@ -95,7 +95,7 @@ def amcl(model: Model, options: ExportOptions) -> ParameterFile:
     unknown = [entry.why for entry in alphas_learned if isinstance(entry, Kept)]
     if len(unknown) == len(alphas_learned):
         raise ModelError(
-            f"none of AMCL's alphas is known: {unknown[0]}", advice="calibrate with a longer log"
+            f"no alpha of AMCL can be written: {unknown[0]}", advice="calibrate with a longer log"
         )
     entries = [
         Entry(

@@ -20,7 +20,7 @@ _REAL, _INTEGER = 9, 6  # MAV_PARAM_TYPE_REAL32 and _INT32, as QGroundControl wr
 
 @dataclass
 class FirmwareFile:
-    """The lines of a parameter file, its values, and why others were left at the vehicle's own."""
+    """The lines of a parameter file, its values, and why others are not written."""
 
     lines: list[str]
     values: dict[str, Value] = field(default_factory=dict)
@@ -71,8 +71,8 @@ def _file(
     limits = numbers.limits_asked
     if version is None:
         raise ModelError(
-            f"which version of {table.firmware} is it? The names of its parameters differ",
-            advice=f"name it: {table.option} {' or '.join(table.versions)}",
+            f"the parameters of {table.firmware} have other names in each version",
+            advice=f"add {table.option} {' or '.join(table.versions)}",
         )
     parameters = table.of_version(version)
     made = FirmwareFile(

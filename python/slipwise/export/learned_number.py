@@ -117,9 +117,9 @@ class LearnedNumbers:
         std = self.std(number)
         shown = self.text(number)
         if std > 0.0 and not known(number.value, std):
-            return f"learned {shown}, which is not known well enough"
+            return f"{shown} is too uncertain"
         if self._guessed_fraction(number) > UNIDENTIFIABLE_RATIO:
-            return f"the log does not determine it: {shown} is about what was guessed before it"
+            return f"this log does not determine it: {shown} is about the initial guess"
         return ""
 
     def text(self, number: LearnedNumber) -> str:

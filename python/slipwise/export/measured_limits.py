@@ -89,10 +89,7 @@ class MeasuredLimits:
         chosen = next(each for each in found if each.number is least)
         shown: float = getattr(body, name)[place]
         if abs(least.value) < shown:
-            return (
-                f"{abs(least.value):.3g} was found ({chosen.source}), but the poses show {shown:.3g}:"
-                " a limit must not be below what the robot did"
-            )
+            return f"{abs(least.value):.3g} ({chosen.source}) is below {shown:.3g}, which the poses show"
         return chosen
 
     def _measured(self) -> MeasuredBody | str:

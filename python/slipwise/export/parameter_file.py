@@ -35,7 +35,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Kept:
-    """A parameter that is left out, so that the tool's own value stays; `why` stands in its place."""
+    """A parameter that is not written, so that its default stays; `why` stands in its place."""
 
     key: tuple[str, ...]
     why: str
@@ -65,7 +65,7 @@ class ParameterFile:
         for entry in self.entries:
             *parents, last = entry.key
             if isinstance(entry, Kept):
-                said = f"{entry.name} is left at the tool's own value:\n{entry.why}"
+                said = f"{entry.name} is not written, its default stays:\n{entry.why}"
                 lines += _comment(said, _indent(len(parents)))
                 continue
             for depth, part in enumerate(parents):
@@ -82,7 +82,7 @@ class ParameterFile:
         return {entry.name: entry.value for entry in self.entries if isinstance(entry, Entry)}
 
     def kept(self) -> dict[str, str]:
-        """Return why parameters are left at the tool's own value, by their full names."""
+        """Return why parameters are not written, by their full names."""
         kept = (entry for entry in self.entries if isinstance(entry, Kept))
         return {entry.name: " ".join(entry.why.split()) for entry in kept}
 

@@ -141,8 +141,7 @@ def _stamped(stamped: bool | None) -> Entry | Kept:
     if stamped is None:
         return Kept(
             ("stamped_control",),
-            "whether commands are TwistStamped must be right, or the filter hears none:\n"
-            "give --stamped-commands or --no-stamped-commands",
+            "the filter reads no commands of the wrong type: add --stamped-commands or --no-stamped-commands",
         )
     return Entry(("stamped_control",), stamped, f"commands are {'TwistStamped' if stamped else 'Twist'}")
 

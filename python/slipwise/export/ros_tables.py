@@ -72,8 +72,8 @@ def checked_distro(distro: str | None, what: str) -> str:
         )
     if distro is None:
         raise ModelError(
-            f"which release of ROS is it for? The parameters of {what} differ between them",
-            advice=f"name it: {OPTION} {' or '.join(DISTROS)}, or set $ROS_DISTRO",
+            f"the parameters of {what} differ between ROS releases",
+            advice=f"add {OPTION} {' or '.join(DISTROS)}, or set $ROS_DISTRO",
         )
     return distro
 

@@ -23,7 +23,7 @@ from slipwise.models.model import Model
 
 @dataclass(frozen=True)
 class Exported:
-    """The text of one file, the values in it by their names, and why others were left at the tool's own."""
+    """The text of one file, the values in it by their names, and why others are not written."""
 
     text: str
     values: dict[str, Value]

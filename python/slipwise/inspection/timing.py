@@ -22,9 +22,9 @@ class Timing:
 
 
 _MEANINGS = {
-    "clock_offset": "poses are stamped this much later than wheel speeds (held from their stamps on)",
-    "delay_v": "from a speed command to that speed, which then is there at once",
-    "delay_omega": "from a yaw rate command to that yaw rate, which then is there at once",
+    "clock_offset": "poses are stamped this much later than wheel speeds",
+    "delay_v": "from a speed command to the speed, with no lag",
+    "delay_omega": "from a yaw rate command to the yaw rate, with no lag",
     "log_delay_v": "from a speed command to the first effect",
     "log_delay_omega": "from a yaw rate command to the first effect",
     "log_time_constant_v": "then the speed follows with this time constant",

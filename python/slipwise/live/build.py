@@ -60,7 +60,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
 
     Raises:
         SettingsError: settings contradict themselves.
-        ModelError: the start model cannot be read, or remembers no surfaces where these are to be known.
+        ModelError: the start model cannot be read.
         OutputError: a cache that cannot be read cannot be set aside either.
     """
     table, said = settings.live, Said()
@@ -75,6 +75,8 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
         learner, valid = found.learner, found.valid
         if found.said:
             said.note(math.nan, found.said, error=learner is None)
+    if learner is None and table.memory and start is not None and before is None:
+        said.note(math.nan, "the start model remembers no surfaces: the memory starts empty")
     learner = learner or _new_learner(input_name, settings, before, wheels=transport.wheels)
     learning = Learning(learner, start, valid, said)
     rules = rules_for(start, reverse=table.gates.reverse, stale_after=table.gates.stale_after)
@@ -87,7 +89,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     if table.apply.targets and not applying:
         said.note(
             math.nan,
-            f"nothing is handed on to {', '.join(table.apply.targets)}: live.apply.mode is off",
+            f"{', '.join(table.apply.targets)} get no parameters: live.apply.mode is off",
         )
     parts = NodeParts(
         who=Identity(table.name, input_name, table.apply.mode),

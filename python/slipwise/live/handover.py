@@ -62,7 +62,7 @@ class Handover:
     def hand_on(self, t: float, model: Model, *, mark: str = "") -> list[AppliedParameters]:
         """Write the files, each with a `mark` on top; return the parameters for running nodes."""
         if self._rules.folder is None and not (self._rules.set_parameters and self._rules.targets):
-            self._said.begins(t, "nowhere", "nothing is handed on: [live.apply] names no folder to write to")
+            self._said.begins(t, "nowhere", "no parameters are applied: [live.apply] folder is not set")
             return []
         written = [_MODEL] if self._write(t, _MODEL, mark + model.to_yaml()) else []
         wanted = []
@@ -90,7 +90,7 @@ class Handover:
         """Say which targets got nothing until the end."""
         missed = [target for target in self._rules.targets if target not in self._reached]
         if missed:
-            self._said.note(t, f"nothing was ever handed on to {', '.join(missed)}")
+            self._said.note(t, f"{', '.join(missed)} never got parameters")
 
     def _to_send(self, t: float, target: str, values: dict[str, Value]) -> list[AppliedParameters]:
         """Return what the target's node takes while it runs; others are said once."""

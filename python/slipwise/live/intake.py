@@ -160,7 +160,7 @@ class Intake:
         """Say how the sensor of roll and pitch is mounted, where that is another than was said."""
         words = self._learner.attitude_mounting
         if words != self._mounting:
-            self._said.note(t, words or "roll and pitch are those of a level sensor")
+            self._said.note(t, words or "roll and pitch come from a level sensor")
             self._mounting = words
 
     def _push_other(self, pose: Pose) -> None:
@@ -202,7 +202,7 @@ class Intake:
         """Say when the gates close and open; the learner joins nothing across what it did not learn."""
         why = self._gates.why(t)
         if why:
-            self._said.begins(t, "gates", f"nothing is learned: {why}")
+            self._said.begins(t, "gates", f"learning paused: {why}")
         elif self.why_not:
-            self._said.ends(t, "gates", "learning goes on")
+            self._said.ends(t, "gates", "learning resumed")
         self.why_not = why

@@ -13,7 +13,7 @@ from slipwise.errors import SlipwiseError
 from slipwise.live.applied import start_value, values_of
 from slipwise.live.outputs import Validity
 from slipwise.live.said import Said
-from slipwise.live.validity import ModelValidity
+from slipwise.live.validity import STATES, ModelValidity
 from slipwise.logs.contradiction import Contradiction
 from slipwise.models import Model
 
@@ -116,16 +116,17 @@ class Learning:
         if contradicted:
             self.valid = None
         if contradicted and not self.contradicted:
-            self._said.begins(t, "contradiction", f"nothing that was learned is used: {contradicted}")
+            self._said.begins(t, "contradiction", f"the learned model is not used: {contradicted}")
         elif self.contradicted and not contradicted:
-            self._said.ends(t, "contradiction", "poses and inputs contradict each other no longer")
+            self._said.ends(t, "contradiction", "poses and inputs agree again")
         self.contradicted = contradicted
         if self.model is None:
             return
         if self.validity.whole == "estimated" and self.model.content.verdict.good:
             self.valid = self.model
         if self.validity.whole != before and not contradicted:
-            self._said.note(t, f"the model is {self.validity.whole}: {self.validity.why}")
+            why = self.validity.why.removeprefix("The model ")
+            self._said.note(t, f"model {STATES[self.validity.whole]}: {why[:1].lower()}{why[1:]}")
 
     @property
     def valid_now(self) -> Model | None:
@@ -137,7 +138,7 @@ class Learning:
         whole: Validity = self.validity.whole
         if self.valid is not None:
             newest = whole == "estimated" and self.valid is self.model
-            return self.valid, "valid" if newest else f"the last valid one; the model is {whole} now"
+            return self.valid, "valid" if newest else f"the last valid one; the model is {STATES[whole]} now"
         if self.start is not None:
-            return self.start, f"the start model; what was learned is {whole}"
-        return None, f"none: what was learned is {whole}, use the kinematic baseline"
+            return self.start, f"the start model; the learned one is {STATES[whole]}"
+        return None, f"none: the learned one is {STATES[whole]}, use the kinematic baseline"

@@ -29,6 +29,7 @@ from slipwise.live.said import Said
 from slipwise.live.samples import Override, Pose, Request, RunStart, Sample, SurfaceCue, Unusable
 from slipwise.live.status import DrivenPath, Identity, Now, parameters_now, status_of
 from slipwise.live.transport import Transport
+from slipwise.live.validity import STATES
 from slipwise.live.watch.watcher import Watcher
 from slipwise.models import Model
 
@@ -197,7 +198,7 @@ class LiveNode:
         parts = self._parts
         monitor = parts.learning.learner.motion_monitor()
         if monitor.stuck and not self._stuck:
-            parts.said.begins(t, "stuck", "the robot is stuck: it does not move as the model says it must")
+            parts.said.begins(t, "stuck", "the robot is stuck: it does not move as the model predicts")
         elif self._stuck and not monitor.stuck:
             parts.said.ends(t, "stuck", "the robot moves again")
         self._stuck = monitor.stuck
@@ -233,7 +234,7 @@ class LiveNode:
         for name in applied.values:
             why = applied.held.get(name)
             if why is None:
-                said.ends(t, f"held {name}", f"{name} is held back no longer")
+                said.ends(t, f"held {name}", f"{name} is applied again")
             else:
                 said.begins(t, f"held {name}", why)
 
@@ -246,7 +247,7 @@ class LiveNode:
         start = parts.learning.start or without_slip(handed, why)
         for output in parts.handover.withdraw(t, start, why):
             self._publish(output)
-        parts.said.note(t, f"the parameters that were handed on are withdrawn: {why}")
+        parts.said.note(t, f"applied parameters are withdrawn: {why}")
 
     def _hand_on(self, t: float) -> None:
         parts = self._parts
@@ -279,10 +280,10 @@ class LiveNode:
         parts = self._parts
         valid = parts.learning.valid_now
         if parts.applied is None:
-            parts.said.note(t, "nothing is handed on: live.apply.mode is off")
+            parts.said.note(t, "no parameters are applied: live.apply.mode is off")
         elif valid is None:
             validity = parts.learning.validity
-            parts.said.note(t, f"nothing is handed on: the model is {validity.whole}: {validity.why}")
+            parts.said.note(t, f"no parameters are applied: model {STATES[validity.whole]}: {validity.why}")
         else:
             parts.applied.jump(valid, parts.learning.validity.of)
             self._hand_on(t)

@@ -62,7 +62,7 @@ def find_roles(
             return choose_topics(topics, options)
         if missing and not said and now > begin + SAY_AFTER:
             said = True
-            say(f"waiting for {missing}; there is {', '.join(sorted(names)[:8]) or 'no topic at all'}")
+            say(f"waiting for {missing}; topics now: {', '.join(sorted(names)[:8]) or 'none'}")
         time.sleep(LOOK_EVERY)
 
 
@@ -81,7 +81,7 @@ def with_oriented_imu(wire: RosWire, roles: Roles, say: Callable[[str], None]) -
         say(f"{roles.imu.name} has no orientation: its yaw rates are used")
         return replace(roles, imu=None)
     if rotated is None:
-        say(f"{roles.imu.name} says nothing yet: headings wait for it")
+        say(f"{roles.imu.name} is silent: headings wait for it")
     return roles
 
 

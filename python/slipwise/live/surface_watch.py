@@ -51,7 +51,7 @@ class SurfaceWatch:
         if cue.label and not label:
             self._said.count("a label without a name")
         elif label and not self._learner.remembers:
-            self._said.begins(t, "label", "labels say nothing here: the node runs without --memory")
+            self._said.begins(t, "label", "labels are ignored: the node runs without --memory")
         elif not label:
             self._label = ""
             self._said.count("cues that the surface changes")
@@ -90,7 +90,7 @@ class SurfaceWatch:
             case "merged":
                 self._said.note(t, f"{name} and {change.other} are one surface: they cannot be distinguished")
             case "dropped":
-                self._said.note(t, f"{name} is forgotten: more surfaces than can be kept")
+                self._said.note(t, f"{name} is dropped: too many surfaces")
 
 
 def today() -> str:

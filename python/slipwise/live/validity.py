@@ -10,6 +10,14 @@ from slipwise.models import Model
 CONFIRMED = 3  # judgements in a row that agree before the state changes
 
 
+#: The states in words.
+STATES: dict[Validity, str] = {
+    "estimated": "valid",
+    "unestimated": "not yet valid",
+    "invalid": "not valid",
+}
+
+
 class Hysteresis:
     """A state that changes only where several judgements in a row say so."""
 
@@ -48,7 +56,7 @@ def judged(model: Model, judgement: Judgement) -> tuple[Validity, str]:
 
 
 def _not_shown(waits: str) -> str:
-    return f"what poses and inputs say is compared first: {waits}"
+    return f"poses and inputs are compared first: {waits}"
 
 
 def _untrue(judgement: Judgement) -> bool:

@@ -133,17 +133,17 @@ class BagClocks:
     def sentences(self, unstamped: Sequence[str]) -> tuple[str, ...]:
         """Say what was found, and how topics without headers are dated."""
         names, main = " and ".join(unstamped), self.main
-        dated = f": {names}, without a header, is dated on their clock" if unstamped else ""
+        dated = f": {names}, without a header, gets their clock" if unstamped else ""
         if main is not None and main.simulated:
             said = [f"header stamps run at {main.rate:.3g} of the bag's clock{dated}"]
         elif main is not None and main.apart:
             said = [f"{apart_words(main.offset, 'the bag')}{dated}"]
         else:
-            how = "has no header: its commands are dated by the time of receipt"
+            how = "has no header: its commands get the time of receipt"
             said = [f"{name} {how}" for name in unstamped]
         said += [shift_words(topic, seconds) for topic, seconds in self.shifts.items()]
         said += [
-            f"the stamps of {topic} do not go with the bag's clock: it is dated by the time of receipt"
+            f"the stamps of {topic} do not follow the bag's clock: it gets the time of receipt"
             for topic in sorted(self.received)
         ]
         return tuple(said)

@@ -74,7 +74,7 @@ def choose(live: Mapping[str, Topic], role: Role, given: str | None) -> RoleChoi
     rejected |= {
         topic.name: f"the name {winners[0].name} fits better" for score, topic in scored if score < best
     }
-    why = "the only one that can be" if len(scored) == 1 else "its name fits best"
+    why = "only candidate" if len(scored) == 1 else "best name"
     return RoleChoice(winners[0], why, rejected)
 
 
@@ -110,6 +110,6 @@ def _undecided(
     problem = LogError(
         f"several topics could be the {role.name}", advice=f"give {role.option} one of {shown}"
     )
-    why = {topic.name: f"several could be the {role.name}: choose with {role.option}" for topic in winners}
-    lesser = {topic.name: "others fit better by name" for _, topic in scored if topic not in winners}
+    why = {topic.name: f"one of several candidates: choose with {role.option}" for topic in winners}
+    lesser = {topic.name: "others have better names" for _, topic in scored if topic not in winners}
     return RoleChoice(rejected=rejected | lesser | why, problem=problem)

@@ -65,7 +65,7 @@ def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
     keep, duplicate, backward = forward_stamps(stream.t)
     if keep.all():
         return stream
-    _count(stream, duplicate, tally, "duplicate-stamp", "with the stamp of the one before")
+    _count(stream, duplicate, tally, "duplicate-stamp", "with a repeated stamp")
     _count(stream, backward, tally, "backward-stamp", "whose stamp goes backward")
     return stream.select(keep)
 

@@ -233,7 +233,7 @@ def use_of_column(name: str, names: Collection[str], options: LogOptions) -> tup
     if name in POSE_COLUMNS:
         return ("pose", "") if options.poses is None else ("", "--poses gives the poses")
     if name not in NUMERIC:
-        return "", "carried along; if slipwise knows it by another name, give --columns"
+        return "", "slipwise has no such column; --columns gives it another name"
     why = _unused_because(name, names, options)
     return ("", why) if why else ("command" if name.startswith("cmd") else "wheel", "")
 

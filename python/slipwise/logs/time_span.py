@@ -30,8 +30,9 @@ def cut_to_span(log: Log, start: float | None, end: float | None) -> Log:
     span = f"{start or 0.0:g} s to {until}"
     if not runs:
         where = log.sources[0].path if log.sources else ""
-        advice = f"the log lasts {last - first:.1f} s; choose --start and --end within it"
-        raise LogError(f"no pose lies within {span} of the log", where=where, advice=advice)
+        given = " ".join(f"--{n} {v:g}" for n, v in (("start", start), ("end", end)) if v is not None)
+        what = f"the log is {last - first:.0f} s long; {given} leaves no pose"
+        raise LogError(what, where=where, advice="choose times within the log")
     return replace(log, runs=runs, notes=(*log.notes, f"only {span} of {last - first:.1f} s are used"))
 
 

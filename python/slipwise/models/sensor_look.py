@@ -81,14 +81,14 @@ def sensor_sentences(model: Model) -> list[str]:
         place += f"{', ' if place else ''}turned by {degrees} deg to the {side}"
     settings = model.content.provenance.settings.get("sensor_extrinsics")
     given = settings if isinstance(settings, dict) else {}
-    numbers = ", ".join(
-        f"{name} = {float(given.get(name, 0.0)) + look.pose[axis]:.2f}"
+    numbers = " ".join(
+        f"--set sensor_extrinsics.{name}={float(given.get(name, 0.0)) + look.pose[axis]:.2f}"
         for axis, name in enumerate(("x", "y", "yaw"))
         if axis in seen
     )
     terms = ", ".join(_TERMS[axis] for axis in seen)
     look_like = f"The learned slip ({terms}) looks like a pose sensor {place}"
-    return [f"{look_like}: if it sits there, give [sensor_extrinsics] {numbers} in the settings."]
+    return [f"{look_like}: if it sits there, add {numbers}"]
 
 
 def _along(body: BodyTwists, axis: int) -> tuple[np.ndarray, np.ndarray]:

@@ -81,8 +81,8 @@ def test_a_drive_that_is_too_dull_says_what_would_show_a_limit() -> None:
     found = search(SIDES, dull_drive(1, 60.0), 1)
     assert not {limit.kind for limit in found.found} & {_core.LimitKind.Saturation, _core.LimitKind.DeadBand}
     text = " ".join(limits_advice(found))
-    assert "No saturation shows: command more than 1.0 m/s to see one" in text
-    assert "No dead-band shows" in text
+    assert "No saturation found; the largest commands were 1.0 m/s" in text
+    assert "No dead band found" in text
 
 
 def test_simulated_physics_behind_limits_show_them() -> None:

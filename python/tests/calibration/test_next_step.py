@@ -26,4 +26,5 @@ def test_a_model_that_was_checked_is_exported() -> None:
 def test_a_bad_model_leads_to_the_driving_that_is_missing_or_to_none() -> None:
     missing = Verdict(False, "No.", advice=("Turn on the spot.",))
     assert "calibrate again" in after_learning(missing, Path("m.yaml"))[0]
-    assert "keep to the commands" in after_checking(Verdict(False, "No."), Path("m.yaml"))[0]
+    line = after_checking(Verdict(False, "No."), Path("m.yaml"))[0]
+    assert "use commands or wheel speeds as they are" in line

@@ -34,7 +34,7 @@ def test_drive_that_slips_gives_a_good_verdict_with_its_figures() -> None:
     assert result.verdict.good
     assert held_out is not None
     assert held_out.position < 0.2 * held_out.baseline_position
-    figures = f"mean error after 5 s is {held_out.position:.3g} m and {held_out.heading:.3g} rad, "
+    figures = f"misses by {held_out.position:.3g} m and {held_out.heading:.3g} rad after 5 s, "
     assert figures in result.verdict.sentence
     assert result.model.content.verdict.sentence == result.verdict.sentence
 
@@ -178,8 +178,8 @@ def test_inputs_that_do_not_explain_the_motion_give_no_good_model_though_it_beat
     verdict = give_verdict(judged(BETTER, BETTER, still=1.05), Identified(2, ()), facts())
     assert not verdict.good
     assert "the commands do not explain the poses. They explain 0 % of the motion" in verdict.sentence
-    assert "stands still misses by 1.00 m after 2 s, the model by 1.05 m" in verdict.sentence
-    assert verdict.advice[0].startswith("Check that commands and poses are of one robot and one drive")
+    assert "standing still misses by 1.00 m after 2 s, the model by 1.05 m" in verdict.sentence
+    assert verdict.advice[0].startswith("Check that commands and poses come from the same robot, drive")
     half = give_verdict(judged(BETTER, BETTER, still=0.52), Identified(2, ()), facts())
     assert not half.good
     assert "They explain 48 % of the motion" in half.sentence
@@ -201,7 +201,7 @@ def test_a_model_that_is_mostly_outside_its_ellipsoids_is_not_good() -> None:
     untrue = ellipsoids(0.3, nis=1184.0)
     verdict = give_verdict(judged(BETTER, BETTER, untrue), Identified(2, ()), facts())
     assert not verdict.good
-    assert "what it says of its own errors is not true" in verdict.sentence
+    assert "its uncertainty is not that of its errors" in verdict.sentence
     assert "hold 9 of 30 (30 %) held-out segments" in verdict.sentence
 
 

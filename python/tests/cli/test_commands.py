@@ -58,7 +58,7 @@ def test_calibrate_writes_model_settings_result_and_report(slipwise: Slipwise, d
     values = {p.name: p for p in load_model("model.yaml").content.parameters}
     assert abs(values["ang.w"].value + 0.3) < 4.0 * values["ang.w"].std
     assert "ang.w" in result.out
-    assert "The learned model's mean error after 5 s is " in result.out
+    assert "The model misses by " in result.out
 
 
 def test_calibrate_says_what_was_learned_then_the_verdict_then_the_numbers(

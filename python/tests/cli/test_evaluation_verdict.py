@@ -52,7 +52,7 @@ def test_a_model_that_is_given_is_judged_whatever_else_is_asked_for() -> None:
         assert verdict is not None
         said.append((verdict.good, verdict.sentence))
         error = f"{evaluation.score('model', 5.0).position.mean:.3g} m"
-        assert f"The learned model's mean error after 5 s is {error}" in verdict.sentence
+        assert f"The model misses by {error}" in verdict.sentence
     assert said[0] == said[1] == said[2]
 
 

@@ -67,7 +67,7 @@ def test_all_writes_what_fits_and_says_what_does_not(slipwise: Slipwise, wheel: 
     result = slipwise("export", wheel, "--to", "all", "-o", "config", "--ros-distro", "jazzy")
     assert result.code == 0
     assert left_in(Path("config")) == ALL_OF_WHEEL
-    assert "left out: mppi: " in result.out
+    assert "mppi skipped: " in result.out
     assert "--input command" in result.out
 
 
@@ -77,7 +77,7 @@ def test_the_release_of_ros_is_asked_for_where_it_matters(
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     result = slipwise("export", command, "--to", "mppi")
     assert result.code == 2
-    assert "which release of ROS is it for?" in result.err
+    assert "differ between ROS releases" in result.err
     assert "--ros-distro" in result.err
     monkeypatch.setenv("ROS_DISTRO", "kilted")
     assert slipwise("export", command, "--to", "mppi").code == 0
@@ -119,7 +119,7 @@ REFUSED = {
     ),
     "no target": (("wheel.yaml",), "Missing option '--to'"),
     "two firmwares": (("command.yaml", "--px4", "1.17", "--ardupilot", "4.6"), "Missing option '--to'"),
-    "no firmware": (("command.yaml", "--to", "px4"), "which version of PX4 is it?"),
+    "no firmware": (("command.yaml", "--to", "px4"), "other names in each version: add --px4"),
     "unknown firmware": (
         ("command.yaml", "--px4", "1.2"),
         "no table of parameters for PX4 1.2 (--px4): one of",

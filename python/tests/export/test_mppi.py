@@ -136,8 +136,8 @@ def test_no_ramp_is_below_what_the_poses_show() -> None:
     body = {**BODY, "yaw_acceleration": [0.9, 0.9], "acceleration": [0.1, 9.0]}
     file = export_model(make_model(replace(LATE, body=body)), "mppi", name="m", options=KILTED)
     assert "FollowPath.ax_max" in file.values
-    assert "the poses show 0.9" in file.kept["FollowPath.az_max"]
-    assert "the poses show 9" in file.kept["FollowPath.ax_min"]
+    assert "is below 0.9, which the poses show" in file.kept["FollowPath.az_max"]
+    assert "is below 9, which the poses show" in file.kept["FollowPath.ax_min"]
 
 
 def test_names_are_those_of_the_release_asked_for() -> None:
@@ -153,7 +153,7 @@ def test_names_are_those_of_the_release_asked_for() -> None:
 
 
 def test_no_release_is_guessed() -> None:
-    with pytest.raises(ModelError, match=r"which release of ROS .*--ros-distro humble or"):
+    with pytest.raises(ModelError, match=r"differ between ROS releases: add --ros-distro humble or"):
         written(LATE, ExportOptions())
     with pytest.raises(ModelError, match="no table of parameters for ROS 'foxy'"):
         written(LATE, ExportOptions(ros_distro="foxy"))

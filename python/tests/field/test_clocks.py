@@ -50,7 +50,7 @@ def test_commands_without_headers_are_dated_on_the_clock_of_the_headers(
     said = "\n".join(open_log(path := bag.write(tmp_path / "a.mcap")).notes)
     side = "ahead of" if seconds > 0.0 else "behind"
     apart = f"{abs(seconds):.2f} s {side} the bag's"
-    assert f"{apart}: /cmd_vel, without a header, is dated on their clock" in said
+    assert f"{apart}: /cmd_vel, without a header, gets their clock" in said
     assert ("the clock of /odom is not that of the poses" in said) == poses_alone
     assert np.abs(offsets_of_commands(path)).max() < 0.08
 

@@ -150,7 +150,7 @@ def test_an_antenna_away_from_the_centre_of_turning_is_named_with_its_place(
     log = (field_log("antenna_with_imu.mcap"), "--input", "wheel")
     document = learned(slipwise, *log)
     (said,) = (sentence for sentence in document["summary"] if "looks like a pose sensor" in sentence)
-    assert "[sensor_extrinsics] x = 0.45, y = 0.10 in the settings" in said
+    assert "add --set sensor_extrinsics.x=0.45 --set sensor_extrinsics.y=0.10" in said
     assert said in slipwise("show", document["files"]["model"]).out
     (folder / "robot.toml").write_text("[sensor_extrinsics]\nx = 0.45\ny = 0.10\n")
     known = learned(slipwise, *log, "--settings", "robot.toml")

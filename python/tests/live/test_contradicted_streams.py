@@ -152,7 +152,7 @@ def test_a_sound_stream_is_handed_on_once_contradictions_would_have_shown_themse
     built, transport = lived(sound(), tmp_path)
     assert built.learning.valid_now is not None
     assert any(text.startswith("written to ") for text in transport.said)
-    first = next(t for t, text in built.said.log() if text.startswith("the model is estimated"))
+    first = next(t for t, text in built.said.log() if text.startswith("model valid: "))
     assert first > 22.0  # fifteen stretches of 1.5 s
     assert parse_model((tmp_path / "model.yaml").read_text(), where="").content.verdict.good
 

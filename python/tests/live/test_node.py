@@ -36,7 +36,7 @@ def test_the_start_model_is_published_once_however_often_nothing_valid_is_found(
     built, transport = run_node(driven(no_slip), LiveTable(model=str(start)))
     assert built.learning.segments > 20
     assert [which for which, _ in models(transport.outputs)] == [
-        "the start model; what was learned is unestimated"
+        "the start model; the learned one is not yet valid"
     ]
 
 
@@ -55,11 +55,11 @@ def test_the_last_valid_model_is_published_once_while_nothing_newer_is_valid(
     assert len(judgements) > 25
     published = models(transport.outputs)
     assert published[0][0] == "valid"
-    assert published[-1][0] == "the last valid one; the model is invalid now"
+    assert published[-1][0] == "the last valid one; the model is not valid now"
     assert [which for which, _ in published].count(published[-1][0]) == 1
     assert published[-1][1] == published[-2][1]
     assert all(before != after for before, after in itertools.pairwise(published))
-    assert transport.statuses[-1].given == "the last valid one; the model is invalid now"
+    assert transport.statuses[-1].given == "the last valid one; the model is not valid now"
 
 
 def test_the_column_at_start_holds_start_values_where_nothing_is_handed_on() -> None:

@@ -163,6 +163,6 @@ def test_a_log_whose_stamps_are_all_the_same_is_refused(run: Run) -> None:
             for name in ("t", "x", "y", "yaw", "frame", "std_xy", "std_yaw")
         },
     )
-    same = LeftOut("poses with the stamp of the one before", 300, "line 3", "duplicate-stamp")
+    same = LeftOut("poses with a repeated stamp", 300, "line 3", "duplicate-stamp")
     with pytest.raises(LogError, match="stamps do not go forward in 300 of 301 poses"):
         checked(Log(runs=(replace(run, poses=few),), left_out=(same,)))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from slipwise.calibration.result import History
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, physical_parameters
-from slipwise.number_text import estimate_text
+from slipwise.number_text import count_text, estimate_text
 from slipwise.reporting.contents import PLAIN, Contents
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers, vertical_lines
 from slipwise.reporting.markup import MINUS, details, grid, legend, missing, paragraph, table
@@ -88,8 +88,8 @@ def _alarms(contents: Contents, history: History) -> str:
     shown = ", ".join(f"{timeline.seconds(run, t):.1f} s" for run, t in alarms[:_MOST_ALARMS])
     more = f" and {len(alarms) - _MOST_ALARMS} more" if len(alarms) > _MOST_ALARMS else ""
     return paragraph(
-        f"The terrain seems to change {len(alarms)} time{'s' if len(alarms) > 1 else ''}, marked by an "
-        f"orange line: at {shown}{more}. There, what was learned before counts less.",
+        f"{count_text(len(alarms), 'change')} of terrain found, marked by an orange line: {shown}{more}. "
+        "There, what was learned before counts less.",
         kind="note",
     )
 
