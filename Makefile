@@ -145,7 +145,7 @@ $(STAMPS)/env: FORCE
 
 $(STAMPS)/native: $(STAMPS)/env pyproject.toml constraints.txt
 	@echo "installing the build tools"
-	@$(PYTHON_IN) tools/requirements.py build native > $(STAMPS)/native.txt
+	@$(PYTHON_IN) tools/requirements.py build native live > $(STAMPS)/native.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/native.txt
 	@touch $@
 

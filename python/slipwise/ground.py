@@ -45,7 +45,7 @@ class Grade:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.downhill) and 0.0 <= self.slope <= STEEPEST):
             raise SettingsError(
-                f"a slope of {self.slope:g} rad towards {self.downhill:g} rad is no grade",
+                f"a slope of {self.slope:g} rad towards {self.downhill:g} rad is not a grade",
                 advice=f"give a slope from 0 to {STEEPEST:.2f} rad, and the direction in which it falls",
             )
 

@@ -83,7 +83,7 @@ class TerrainAhead:
             SettingsError: the distance is negative or not finite.
         """
         if not (np.isfinite(travelled) and travelled >= 0.0):
-            raise SettingsError(f"{travelled:g} m is no distance travelled", where="terrain ahead")
+            raise SettingsError(f"{travelled:g} m is not a distance travelled", where="terrain ahead")
         distance = np.asarray(self.distance)
         first = int(np.searchsorted(distance, travelled, side="right")) - 1
         rest = np.maximum(distance[first:] - travelled, 0.0)

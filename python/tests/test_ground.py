@@ -41,9 +41,9 @@ def test_a_map_of_a_plane_stands_as_the_grade_does() -> None:
 
 @pytest.mark.parametrize("slope", [-0.1, 1.2, math.nan, math.inf])
 def test_a_slope_that_is_none_is_refused(slope: float) -> None:
-    with pytest.raises(SettingsError, match="is no grade"):
+    with pytest.raises(SettingsError, match="is not a grade"):
         Grade(slope=slope)
-    with pytest.raises(SettingsError, match="is no grade"):
+    with pytest.raises(SettingsError, match="is not a grade"):
         Grade(slope=0.1, downhill=math.nan)
 
 

@@ -151,5 +151,5 @@ def test_what_was_passed_is_no_longer_ahead() -> None:
     passed = AHEAD.after(1.5)
     np.testing.assert_allclose(np.asarray(passed.distance), [0.0])
     assert np.asarray(passed.probability["sand"]).tolist() == [1.0]
-    with pytest.raises(SettingsError, match="no distance"):
+    with pytest.raises(SettingsError, match="not a distance"):
         AHEAD.after(-1.0)

@@ -217,7 +217,7 @@ def start_of(prior: KnownFleet) -> StartPrior:
     """
     if prior.content.start is None:
         raise ModelError(
-            "this fleet says nothing of the next robot: fewer than two robots could be used",
+            "this fleet has no prior for the next robot: fewer than two robots could be used",
             where=str(prior.path),
             advice="run `slipwise fleet` on logs of several robots of the type",
         )

@@ -67,7 +67,7 @@ def convert(
     if logs[0].suffix in _MODEL_ENDINGS:
         return _convert_model(logs, output, out)
     if output is None:
-        raise OutputError("say where the new log goes", advice="give -o FILE, such as -o drive.csv")
+        raise OutputError("no output file given", advice="give -o FILE, such as -o drive.csv")
     refuse_unknown_log_format(output)
     request = ShareRequest(anonymise, card or anonymise, keep, licence, robot, sensors)
     files = {"log": output} | request.files(output)

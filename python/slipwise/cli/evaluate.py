@@ -165,7 +165,7 @@ def _options(
         seconds = tuple(float(part) for part in horizons.split(",") if part.strip())
     except ValueError:
         raise SettingsError(
-            f"'{horizons}' is no list of seconds", where="--horizons", advice="such as 1,2,5"
+            f"'{horizons}' is not a list of seconds", where="--horizons", advice="such as 1,2,5"
         ) from None
     names = None
     if methods is not None:

@@ -119,7 +119,7 @@ def _known(
     limits |= {name: value for name, value in given.items() if value is not None}
     if "speed" not in limits or "yaw_rate" not in limits:
         raise SettingsError(
-            "the limits of the robot are not known",
+            "the limits of the robot are unknown",
             where="--vehicle",
             advice="give --vehicle, or --speed, --yaw-rate and --radius",
         )

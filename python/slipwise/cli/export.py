@@ -164,7 +164,7 @@ def _logged(given: Sequence[str]) -> dict[str, float]:
             found[name.strip()] = float(value)
         except ValueError:
             raise SettingsError(
-                f"{text!r} is no parameter", where="--logged", advice="give NAME=VALUE"
+                f"{text!r} is not a parameter", where="--logged", advice="give NAME=VALUE"
             ) from None
     return found
 

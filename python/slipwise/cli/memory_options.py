@@ -37,7 +37,7 @@ def sequence_options(
 
     if len(models) > 1:
         raise SettingsError(
-            "learning goes on from one model",
+            "only one model can be continued",
             where=str(models[1]),
             advice="join their surfaces first: slipwise surfaces merge A.yaml B.yaml -o C.yaml",
         )

@@ -24,7 +24,9 @@ def _numbers(text: str, option: str, names: str, example: str) -> tuple[float, .
         numbers = ()
     what, order = names.split()
     if len(numbers) != len(order.split(",")) or not all(map(math.isfinite, numbers)):
-        raise SettingsError(f"{text!r} is no {what}", where=option, advice=f"give {order}, such as {example}")
+        raise SettingsError(
+            f"{text!r} is not a {what}", where=option, advice=f"give {order}, such as {example}"
+        )
     return numbers
 
 
@@ -47,7 +49,9 @@ def area_of(text: str, option: str) -> tuple[float, float]:
     try:
         width, depth = (float(side) for side in text.lower().split("x"))
     except ValueError:
-        raise SettingsError(f"{text!r} is no area", where=option, advice="such as 8x8, in metres") from None
+        raise SettingsError(
+            f"{text!r} is not an area", where=option, advice="such as 8x8, in metres"
+        ) from None
     return width, depth
 
 

@@ -31,13 +31,15 @@ class ShareRequest:
 
     def __post_init__(self) -> None:
         if self.keep is not None and not self.anonymise:
-            raise SettingsError("nothing is left out", where="--keep", advice="it goes with --anonymise")
+            raise SettingsError("no columns are removed", where="--keep", advice="it goes with --anonymise")
         for name in ("licence", "robot", "sensors"):
             value = getattr(self, name)
             if value is not None and not self.card:
                 raise SettingsError("no card is written", where=f"--{name}", advice="add --card")
             if value is not None and not value.strip():
-                raise SettingsError("nothing is said", where=f"--{name}", advice="say it, or leave it out")
+                raise SettingsError(
+                    "no text given", where=f"--{name}", advice="add the text, or leave the option out"
+                )
 
     def files(self, table: Path) -> dict[str, Path]:
         """The files beside the table.

@@ -80,7 +80,7 @@ class Dynamics:
     [states, parameters]); central differences serve without them.
 
     Raises:
-        SettingsError: two names are the same, nothing is measured, or there is no parameter.
+        SettingsError: two names are the same, nothing is measured, or there is not a parameter.
     """
 
     states: Sequence[State]

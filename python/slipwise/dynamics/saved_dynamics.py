@@ -53,7 +53,7 @@ def load_dynamics(path: str | Path, dynamics: Dynamics) -> Dynamics:
     content = read_yaml(Path(path))
     if content.get("slipwise_dynamics") != SCHEMA:
         raise ModelError(
-            f"this is no dynamics file of version {SCHEMA}",
+            f"this is not a dynamics file of version {SCHEMA}",
             where=str(path),
             advice="give one that LearnedDynamics.save wrote",
         )

@@ -25,7 +25,7 @@ class LearnedNumber:
 
     value: float
     by_parameter: Floats  # [parameters]
-    own_variance: float = 0.0  # of what is no parameter, such as a limit; taken as independent
+    own_variance: float = 0.0  # of what is not a parameter, such as a limit; taken as independent
     guessed: float = 0.0  # fraction of that variance that the log says nothing about
 
     def __add__(self, other: LearnedNumber) -> LearnedNumber:

@@ -143,7 +143,8 @@ def _comment(text: str, indent: str = "") -> list[str]:
 def _float_text(value: float) -> str:
     if not math.isfinite(value):
         raise ModelError(
-            f"a parameter would be {value}, which is no number", advice="calibrate again, or restore the file"
+            f"a parameter would be {value}, which is not a number",
+            advice="calibrate again, or restore the file",
         )
     mantissa, _, exponent = f"{value:.6g}".partition("e")
     if "." not in mantissa:

@@ -90,7 +90,7 @@ def _normal_from(content: dict[str, Any]) -> LearnedNormal:
     mean = _floats(content["mean"])
     size = mean.shape
     if mean.ndim != 1:
-        raise ValueError("a mean is no list of numbers")
+        raise ValueError("a mean is not a list of numbers")
     covariance = _floats(content["covariance"]).reshape(size * 2)
     prior_mean, prior_std = _floats(content["prior_mean"]), _floats(content["prior_std"])
     if prior_mean.shape != size or prior_std.shape != size or (np.diag(covariance) < 0.0).any():

@@ -113,5 +113,5 @@ def decoded(line: bytes) -> str:
         return line.decode("utf-8")
     except UnicodeDecodeError as problem:
         raise LogError(
-            "a line is no text in UTF-8", advice="write text in UTF-8, one line for each sample"
+            "a line is not text in UTF-8", advice="write text in UTF-8, one line for each sample"
         ) from problem

@@ -127,7 +127,7 @@ def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Comman
 def _refuse_forces(run: PreparedRun) -> None:
     if run.run.poses.force_x is not None or run.run.poses.force_y is not None:
         raise LogError(
-            "known forces are not taken live",
+            "known forces cannot be replayed live",
             where=run.run.name,
             advice="leave out force_x and force_y, or use slipwise calibrate",
         )

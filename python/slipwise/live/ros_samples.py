@@ -186,7 +186,7 @@ def to_pose(kind: str, options: LogOptions, *, headed: bool = True) -> ToPose:
         std_xy, std_yaw = deviation(var_x, var_y), deviation(var_yaw)
         if angles is None and headed:
             raise ValueError(
-                f"the quaternion ({qx:g}, {qy:g}, {qz:g}, {qw:g}) is no rotation; where no pose has one, "
+                f"the quaternion ({qx:g}, {qy:g}, {qz:g}, {qw:g}) is not a rotation; where no pose has one, "
                 "--set live.positions=true uses the positions alone"
             )
         if angles is None:

@@ -59,7 +59,7 @@ class Stamps:
             return arrived
         if not self._said and main.steady:
             self._said = True
-            dated = "what has no header is dated on their clock"
+            dated = "messages without a header get their clock"
             self._say(f"{apart_words(main.lead, 'this computer')}: {dated}")
         return arrived + main.lead
 

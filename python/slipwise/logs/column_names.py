@@ -24,7 +24,7 @@ def parse_columns(text: str) -> dict[str, str]:
         tidy, equal, own = (piece.strip() for piece in part.partition("="))
         if not (tidy and equal and own):
             advice = "write tidy=yours, such as t=time,cmd_v=vx or, by number, t=0,cmd_v=1"
-            raise SettingsError(f"'{part.strip()}' is no pair of names", where=OPTION, advice=advice)
+            raise SettingsError(f"'{part.strip()}' is not a pair of names", where=OPTION, advice=advice)
         if tidy in columns:
             raise SettingsError(f"{tidy} is given twice", where=OPTION, advice="name one column for each")
         columns[tidy] = own
@@ -40,7 +40,7 @@ def check_columns(columns: Mapping[str, str], known: Collection[str]) -> None:
     unknown = next((tidy for tidy in columns if tidy not in known), None)
     if unknown is not None:
         advice = f"write tidy=yours with one of {', '.join(known)}"
-        raise SettingsError(f"{unknown} is no column of a tidy log", where=OPTION, advice=advice)
+        raise SettingsError(f"{unknown} is not a column of a tidy log", where=OPTION, advice=advice)
 
 
 def renamed(names: Sequence[str], columns: Mapping[str, str], path: Path) -> list[str]:

@@ -38,7 +38,7 @@ def read_kitti(path: Path, text: str) -> tuple[RawStream, tuple[str, ...]]:
         good = (gap < _ORTHOGONAL) & (np.linalg.det(turn) > 0.0)
     if not good.all():
         where = f"{path.name}, pose {int(np.argmin(good)) + 1}"
-        raise LogError("a pose is no rotation", where=where, advice="write the poses again")
+        raise LogError("a pose is not a rotation", where=where, advice="write the poses again")
     turn, place, note = _robot_frame(turn, place)
     columns = {
         **dict(zip(("x", "y", "z"), place.T, strict=True)),

@@ -76,13 +76,13 @@ def read_pose_file(path: Path, columns: Mapping[str, str], tally: Tally) -> Pose
     file = local_file(path, "check the path after --poses", LARGEST / (1 << 20))
     path = Path(shown(path))
     if file.is_dir():
-        raise LogError("a folder is no file of poses", where=str(path), advice=_KNOWN)
+        raise LogError("a folder is not a file of poses", where=str(path), advice=_KNOWN)
     if file.stat().st_size > LARGEST:
         raise LogError(f"more than {LARGEST >> 30} GiB of poses", where=str(path), advice="thin them before")
     content = file.read_bytes()
     if content.startswith(_BAGS):
         advice = "read the bag itself with --pose-topic, or export its poses as TUM, as evo_traj does"
-        raise LogError("a bag is no file of poses", where=str(path), advice=advice)
+        raise LogError("a bag is not a file of poses", where=str(path), advice=advice)
     stream, kind, notes = _read(path, file, content, columns, tally)
     if not len(stream.t):
         raise LogError("the file holds no poses", where=str(path), advice=_KNOWN)

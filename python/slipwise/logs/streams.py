@@ -137,7 +137,7 @@ def _without_impossible_stamps(stream: RawStream, tally: Tally) -> RawStream:
         raise LogError(
             f"stamps of {stream.name} are about {usual:.2g}", where=where, advice=unit_advice(usual)
         )
-    return _keep(stream, ~beyond, tally, "bad-stamp", "whose stamp is no time in seconds")
+    return _keep(stream, ~beyond, tally, "bad-stamp", "whose stamp is not a time in seconds")
 
 
 def order_codes(values: NDArray[np.float64] | Ints) -> Ints:

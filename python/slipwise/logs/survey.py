@@ -92,7 +92,7 @@ def _part(topic: Topic, found: TopicRoles) -> Part:
     elif topic.type == TF and topic.name.endswith("static"):
         why = "read where the pose comes from TF"
     else:
-        why = "; ".join(against) or "its type is no pose, command or wheel speed"
+        why = "; ".join(against) or "its type is not a pose, command or wheel speed"
     return Part(topic.name, topic.type, topic.count, topic.rate, ", ".join(uses), why)
 
 

@@ -83,7 +83,7 @@ def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
 
     Raises:
         LogError: the file cannot be read, holds poses alone, or has no column of a name that was given.
-        SettingsError: `options.columns` names something that is no column of a tidy log.
+        SettingsError: `options.columns` names something that is not a column of a tidy log.
     """
     check_columns(options.columns, KNOWN)
     columns = options.columns

@@ -23,7 +23,7 @@ WHEEL_ODOMETRY = rf"wheel|encoder|{_DRIVE}|odom"
 _NO_COMMAND = "its name says that it is measured, not commanded"
 _NO_POSE = "its name says that it is wheel odometry, which cannot show its own slip"
 _GOAL = "its name says that it is a goal or a plan"
-_NO_WHEELS = "its name says that it is no wheel odometry"
+_NO_WHEELS = "its name says that it is not wheel odometry"
 
 # (pattern, score, why not): the first pattern found in the lower-case name counts; below 0 it is excluded.
 COMMAND_NAMES: Names = (

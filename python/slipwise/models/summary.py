@@ -23,7 +23,7 @@ _LIMITS = {
     "slew_rate_down": "braking at most",
 }
 _AXES = {"speed": "speed", "yaw_rate": "yaw rate", "side": "each side"}
-_NO_SLIP = "What was learned is no slip: poses and inputs of the log contradict each other."
+_NO_SLIP = "What was learned is not slip: poses and inputs of the log contradict each other."
 _SENSOR_PLACES = (("sensor_x", "ahead of", "behind"), ("sensor_y", "left of", "right of"))
 
 

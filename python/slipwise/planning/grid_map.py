@@ -53,7 +53,7 @@ class GridMap:
             )
         if not all(abs(value) <= FARTHEST for value in self.origin):
             advice = f"give metres, {FARTHEST:g} at most"
-            raise PlanningError("the map's origin is no place on earth", where="origin", advice=advice)
+            raise PlanningError("the map's origin is not a place on earth", where="origin", advice=advice)
         beyond = np.pad(cells.astype(np.uint8), 1, constant_values=1)  # what lies beyond the map is not free
         field_ = _core.distance_field(beyond, self.resolution, FAR)[1:-1, 1:-1]
         reach = 2.0 * CELL_REACH * self.resolution  # half a cell each, of the robot's place and the obstacle
@@ -90,7 +90,7 @@ def load_map(path: str | Path, *, most_cells: int = MOST_PIXELS) -> GridMap:
     free = (fraction < _number(content, "free_thresh", source, default=0.196))[levels]
     origin = content.get("origin")
     if not isinstance(origin, list) or len(origin) < 2 or not all(_is_number(value) for value in origin):
-        raise _fault(source, "origin", "is no list of x, y, yaw", "such as [-10.0, -10.0, 0.0]")
+        raise _fault(source, "origin", "is not a list of x, y, yaw", "such as [-10.0, -10.0, 0.0]")
     if len(origin) > 2 and origin[2] != 0.0:
         raise _fault(source, "origin", "is rotated", "save the map with a yaw of 0")
     resolution = _number(content, "resolution", source)
@@ -125,7 +125,7 @@ def _is_number(value: Any) -> bool:
 def _number(content: dict[str, Any], key: str, source: Path, *, default: float | None = None) -> float:
     value = content.get(key, default)
     if not _is_number(value):
-        raise _fault(source, key, "is no number", "see the files that map_saver writes")
+        raise _fault(source, key, "is not a number", "see the files that map_saver writes")
     return float(value)  # type: ignore[arg-type]
 
 

@@ -194,7 +194,7 @@ def _car_of(motions: list[Motion], options: MppiOptions) -> _core.CarCurves | No
 def _sent(command: tuple[float, float]) -> Floats:
     values = np.asarray(command, dtype=np.float64)
     if values.shape != (2,) or not np.isfinite(values).all():
-        raise SettingsError("the last command is no finite (v, omega)", advice="such as last=(0.5, 0.0)")
+        raise SettingsError("the last command is not a finite (v, omega)", advice="such as last=(0.5, 0.0)")
     return values
 
 

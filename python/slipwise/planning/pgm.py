@@ -60,9 +60,9 @@ def _plain(path: Path, body: memoryview) -> Levels:
         try:
             values = np.fromstring(bytes(body), dtype=np.float64, sep=" ")
         except (DeprecationWarning, ValueError) as problem:
-            raise _fault(path, "holds what is no number", "save the map again") from problem
+            raise _fault(path, "holds something that is not a number", "save the map again") from problem
     if not ((values >= 0.0) & (values < 65536.0)).all():
-        raise _fault(path, "holds what is no grey level", "save the map again")
+        raise _fault(path, "holds something that is not a grey level", "save the map again")
     return values.astype(np.uint16)
 
 

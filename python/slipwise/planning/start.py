@@ -98,7 +98,7 @@ def _finite(name: str, values: ArrayLike) -> Floats:
     try:
         numbers = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError) as problem:
-        raise SettingsError(f"the start's {name} is no array of numbers") from problem
+        raise SettingsError(f"the start's {name} is not an array of numbers") from problem
     if not np.isfinite(numbers).all():
         raise SettingsError(f"the start's {name} is not finite", advice="leave out what is not known")
     return numbers

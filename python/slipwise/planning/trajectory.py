@@ -197,7 +197,7 @@ def to_core_pose(pose: Pose, name: str) -> _core.Pose2:
     values = np.asarray(pose, dtype=np.float64)
     if values.shape != (3,) or not np.isfinite(values).all():
         raise SettingsError(
-            f"the {name} is no pose", where=str(pose), advice="give finite x, y [m], yaw [rad]"
+            f"the {name} is not a pose", where=str(pose), advice="give finite x, y [m], yaw [rad]"
         )
     return _core.Pose2(*map(float, values))
 

@@ -72,7 +72,7 @@ class TerrainClassifier:
             SettingsError: the share is not below 1.
         """
         if not 0.0 <= share < 1.0:
-            raise SettingsError(f"{share:g} is no share", where="--unknown", advice="from 0 to below 1")
+            raise SettingsError(f"{share:g} is not a share", where="--unknown", advice="from 0 to below 1")
         named = np.array([*self.surfaces, ""], dtype=object)[answer.nearest]
         for kind, pool in self.pools.items():
             if share > 0.0 and pool.rejections:

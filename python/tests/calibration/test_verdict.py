@@ -125,7 +125,7 @@ def test_a_log_that_contradicts_itself_gives_no_good_model_and_no_talk_of_slip()
     assert result.verdict.timing == ""
     assert len(result.model.content.verdict.contradictions) == 1
     assert summarise(result.model).sentences == (
-        "What was learned is no slip: poses and inputs of the log contradict each other.",
+        "What was learned is not slip: poses and inputs of the log contradict each other.",
     )
 
 

@@ -243,7 +243,7 @@ def test_wrong_use_is_said_in_one_line(
             ["calibrate", "drive.csv", "--wheel-separation", "-1"],
             "wheel-separation must be a positive number of metres",
         ),
-        (["evaluate", "drive.csv", "--horizons", "1,soon"], "'1,soon' is no list of seconds (--horizons)"),
+        (["evaluate", "drive.csv", "--horizons", "1,soon"], "'1,soon' is not a list of seconds (--horizons)"),
         (["evaluate", "drive.csv", "--horizons", "0"], "horizons must be positive seconds"),
         (["evaluate", "drive.csv", "--methods", "magic"], "unknown method 'magic'"),
         (["evaluate", "drive.csv", "--methods", "vendor"], "give --vendor-wheel-separation-multiplier"),

@@ -100,4 +100,4 @@ def test_the_drive_that_teaches_most_stands_in_place_of_advice(slipwise: Slipwis
     assert "next.csv: " in result.out
     assert Path("next.csv").read_text(encoding="utf-8").startswith("t,")
     wrong = slipwise("inspect", drive_csv, "--excite", "next.csv", "--excite-area", "big")
-    assert wrong.line.startswith("'big' is no area (--excite-area)")
+    assert wrong.line.startswith("'big' is not an area (--excite-area)")

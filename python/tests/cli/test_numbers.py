@@ -23,7 +23,7 @@ def test_what_is_no_grade_is_refused_with_an_example(subtests: pytest.Subtests) 
         with (
             subtests.test(text=text),
             pytest.raises(
-                SettingsError, match=r"is no grade \(--grade\): give SLOPE,DOWNHILL, such as 8,-90"
+                SettingsError, match=r"is not a grade \(--grade\): give SLOPE,DOWNHILL, such as 8,-90"
             ),
         ):
             grade_of(text)

@@ -138,5 +138,5 @@ def test_a_wrong_option_is_one_line_that_names_it(slipwise: Slipwise, drive_csv:
         "--pose-clock-offset must be a number of seconds"
     )
     assert refused("--start", "9", "--end", "3").startswith("--end (3 s) is not after --start (9 s)")
-    assert refused("--columns", "t").startswith("'t' is no pair of names (--columns)")
+    assert refused("--columns", "t").startswith("'t' is not a pair of names (--columns)")
     assert refused("--wheelbase", "-1").startswith("--wheelbase must be a positive number of metres")

@@ -58,7 +58,7 @@ def test_a_plan_on_a_grade_takes_slope_and_direction(slipwise: Slipwise, argumen
     assert tilted.json["end"] == pytest.approx([5.0, 6.4, 0.1], abs=5e-3)
     # A way up a slope is longer than it looks from above.
     assert tilted.json["duration"] > 1.01 * level.json["duration"]
-    assert slipwise(*route, "--grade", "15").line.startswith("'15' is no grade (--grade)")
+    assert slipwise(*route, "--grade", "15").line.startswith("'15' is not a grade (--grade)")
 
 
 def test_without_matplotlib_all_but_the_picture_is_written_and_that_is_said(
@@ -79,8 +79,8 @@ def test_without_matplotlib_all_but_the_picture_is_written_and_that_is_said(
     ("start", "goal", "message"),
     [
         ("5.7,2,0", GOAL, "the start lies in or too near an obstacle"),
-        ("1,2", GOAL, "'1,2' is no pose (--from): give X,Y,YAW"),
-        (START, "nan,2,0", "'nan,2,0' is no pose (--to)"),
+        ("1,2", GOAL, "'1,2' is not a pose (--from): give X,Y,YAW"),
+        (START, "nan,2,0", "'nan,2,0' is not a pose (--to)"),
         (START, "40,2,0", "off the map"),
     ],
 )

@@ -96,7 +96,7 @@ def test_json_has_the_figures(slipwise: Slipwise) -> None:
         ("classify terrain.json imu.csv -o x --json x", "two results would be one file"),
         ("classify imu.csv imu.csv", "not a terrain classifier"),
         ("classify terrain.json none.csv", "no such file"),
-        ("classify terrain.json imu.csv --unknown 1", "1 is no share"),
+        ("classify terrain.json imu.csv --unknown 1", "1 is not a share"),
         ("classify terrain.json imu.csv --step 0", "a step of 0 s"),
         ("train imu.csv", "0 surfaces with 2 runs or more; two are needed"),
         ("train imu.csv currents.csv --window 9", "windows of 9 s"),

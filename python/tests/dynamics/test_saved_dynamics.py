@@ -24,7 +24,7 @@ def test_a_drive_begins_with_what_another_one_learned(tmp_path: Path) -> None:
 
 def test_other_files_are_refused(tmp_path: Path, subtests: pytest.Subtests) -> None:
     for text, message in [
-        ("slipwise_model: 4\n", "no dynamics file"),
+        ("slipwise_model: 4\n", "not a dynamics file"),
         ("slipwise_dynamics: 1\n", "parameters none"),
         ("slipwise_dynamics: 1\nparameters: [{name: drag, value: 1, std: 1}]\n", "parameters drag"),
         (

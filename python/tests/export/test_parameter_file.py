@@ -32,7 +32,7 @@ def test_any_string_is_read_back(text: str) -> None:
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), [1.0, float("-inf")]])
 def test_what_is_no_number_is_refused(value: Value) -> None:
-    with pytest.raises(ModelError, match=r"a parameter would be .*, which is no number"):
+    with pytest.raises(ModelError, match=r"a parameter would be .*, which is not a number"):
         yaml_value(value)
 
 

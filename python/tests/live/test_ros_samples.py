@@ -64,7 +64,7 @@ def test_an_odometry_is_wheels_or_a_pose_with_its_deviations() -> None:
 def test_a_pose_without_a_rotation_is_said() -> None:
     wrong = Made(header=header(), pose=pose(1.0, 2.0, 0.5))
     wrong.pose.orientation.w = 7.0
-    with pytest.raises(ValueError, match=r"the quaternion \(0, 0, 0.247404, 7\) is no rotation"):
+    with pytest.raises(ValueError, match=r"the quaternion \(0, 0, 0.247404, 7\) is not a rotation"):
         to_pose(POSE_STAMPED, LogOptions())(wrong, 2.0)
 
 
@@ -154,7 +154,7 @@ def test_a_small_offset_of_clocks_is_seen_live_as_in_a_bag(ahead: float) -> None
     assert stamps.of(no_header, 1010.0, "/cmd_vel") == pytest.approx(1010.0 + ahead, abs=0.02)
     side = "ahead of" if ahead > 0.0 else "behind"
     assert len(said) == 1
-    assert said[0].endswith(f"{side} this computer's: what has no header is dated on their clock")
+    assert said[0].endswith(f"{side} this computer's: messages without a header get their clock")
     assert heard(stamps, "/odom", 0.0)[-1] == pytest.approx(ahead, abs=0.02)
     assert said[1].startswith("the clock of /odom is not that of the poses")
 

@@ -177,7 +177,7 @@ def test_a_log_with_known_forces_is_refused_before_it_is_replayed() -> None:
     (run,) = simulated_log(Drive(seconds=5.0)).runs
     force = np.zeros(len(run.poses))
     pushed = replace(run, poses=replace(run.poses, force_x=force, force_y=force))
-    with pytest.raises(LogError, match="known forces are not taken live"):
+    with pytest.raises(LogError, match="known forces cannot be replayed live"):
         Replay(Log(runs=(pushed,)), "wheel", rate=0.0)
 
 

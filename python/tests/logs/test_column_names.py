@@ -35,12 +35,17 @@ def test_missing_columns_name_the_option(tmp_path: Path) -> None:
         open_log(tmp_path / "a.csv")
     with pytest.raises(LogError, match=r"there is no column stamp \(for t=stamp\).*out of time, vx"):
         open_log(tmp_path / "a.csv", options=LogOptions(columns={"t": "stamp"}))
-    with pytest.raises(SettingsError, match=r"speed is no column of a tidy log .*cmd_v"):
+    with pytest.raises(SettingsError, match=r"speed is not a column of a tidy log .*cmd_v"):
         open_log(tmp_path / "a.csv", options=LogOptions(columns={"speed": "vx"}))
 
 
 def test_the_text_of_the_option_is_pairs() -> None:
     assert parse_columns("t=time, cmd_v = vx") == {"t": "time", "cmd_v": "vx"}
-    for text, message in (("t", "no pair"), ("t=", "no pair"), ("", "no pair"), ("t=a,t=b", "given twice")):
+    for text, message in (
+        ("t", "not a pair"),
+        ("t=", "not a pair"),
+        ("", "not a pair"),
+        ("t=a,t=b", "given twice"),
+    ):
         with pytest.raises(SettingsError, match=message):
             parse_columns(text)

@@ -68,8 +68,8 @@ def test_what_does_not_belong_together_is_refused(tmp_path: Path, subtests: pyte
         (lines(*circle()[:2]), stamps(39), r"39 times for 40 poses .*times\.txt"),
         (lines(*circle()[:2])[:-30], stamps(), r"not 12 numbers \(00\.txt, line 40\)"),
         (lines(*circle()[:2]), stamps(39) + "soon\n", r"not 1 number \(times\.txt, line 40\)"),
-        ("1 0 0 0 0 1 0 0 0 0 1 0\n" + 12 * "1e200 " + "\n", "0\n1\n", r"no rotation \(00\.txt, pose 2\)"),
-        ("1 0 0 0 0 1 0 0 0 0 -1 0\n", "0\n", "no rotation"),
+        ("1 0 0 0 0 1 0 0 0 0 1 0\n" + 12 * "1e200 " + "\n", "0\n1\n", r"not a rotation \(00\.txt, pose 2\)"),
+        ("1 0 0 0 0 1 0 0 0 0 -1 0\n", "0\n", "not a rotation"),
         ("1 0 0 0 0 1 0 0 0 0 1 1e999\n", "0\n", "not 12 numbers"),
     ]:
         with (

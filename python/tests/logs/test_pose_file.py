@@ -91,9 +91,9 @@ def test_stamps_that_are_no_numbers_are_no_reason_to_stumble(tmp_path: Path) -> 
 
 def test_bags_folders_and_missing_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_bytes(b"\x89MCAP0\r\n1234")
-    with pytest.raises(LogError, match=r"a bag is no file of poses .*--pose-topic"):
+    with pytest.raises(LogError, match=r"a bag is not a file of poses .*--pose-topic"):
         read_pose_file(tmp_path / "a.mcap", {}, Tally())
-    with pytest.raises(LogError, match="a folder is no file of poses"):
+    with pytest.raises(LogError, match="a folder is not a file of poses"):
         read_pose_file(tmp_path, {}, Tally())
     with pytest.raises(LogError, match=r"no such file .*--poses"):
         read_pose_file(tmp_path / "none.txt", {}, Tally())

@@ -75,16 +75,16 @@ def test_a_map_that_makes_no_sense_is_refused(tmp_path: Path, subtests: pytest.S
         ({"resolution": "-0.1"}, "resolution of -0.1 m makes no sense"),
         ({"resolution": "500.0"}, "resolution of 500.0 m makes no sense"),
         ({"resolution": ".nan"}, "resolution of nan m makes no sense"),
-        ({"resolution": "fine"}, "`resolution` is no number"),
-        ({"resolution": ""}, "`resolution` is no number"),
+        ({"resolution": "fine"}, "`resolution` is not a number"),
+        ({"resolution": ""}, "`resolution` is not a number"),
         ({"image": ""}, "`image` names no image"),
         ({"image": "no.pgm"}, "cannot read the map's image"),
         ({"image": "map.yaml"}, "is no PGM image"),
         ({"image": '"a\\0.pgm"'}, "not the name of a file"),
         ({"image": "/dev/zero"}, "not a regular file"),
-        ({"origin": "[1.0e+300, 0.0, 0.0]"}, "origin is no place on earth"),
-        ({"origin": "[.nan, 0.0, 0.0]"}, "origin is no place on earth"),
-        ({"origin": "[0.0]"}, "`origin` is no list"),
+        ({"origin": "[1.0e+300, 0.0, 0.0]"}, "origin is not a place on earth"),
+        ({"origin": "[.nan, 0.0, 0.0]"}, "origin is not a place on earth"),
+        ({"origin": "[0.0]"}, "`origin` is not a list"),
         ({"origin": "[0.0, 0.0, 0.5]"}, "`origin` is rotated"),
     ]:
         with subtests.test(changed=changed, message=message):
@@ -106,10 +106,10 @@ def test_an_image_that_makes_no_sense_is_refused(tmp_path: Path, subtests: pytes
     for image, message in [
         (b"P5\n100000 100000\n255\n", "has 100000 x 100000 pixels, more than 25000000"),
         (b"P5\n2 2\n100\n\x00\x10\x20\xff", "has a pixel of 255, where white is 100"),
-        (b"P2\n2 2\n255\n0 1 2 many\n", "holds what is no number"),
-        (b"P2\n2 2\n255\n0 1 2 -3\n", "holds what is no grey level"),
-        (b"P2\n2 2\n255\n0 1 2 nan\n", "holds what is no"),
-        (b"P2\n2 2\n255\n0 1 2 1e99\n", "holds what is no grey level"),
+        (b"P2\n2 2\n255\n0 1 2 many\n", "holds something that is not a number"),
+        (b"P2\n2 2\n255\n0 1 2 -3\n", "holds something that is not a grey level"),
+        (b"P2\n2 2\n255\n0 1 2 nan\n", "holds something that is not"),
+        (b"P2\n2 2\n255\n0 1 2 1e99\n", "holds something that is not a grey level"),
         (b"P5\n0 2\n255\n", "claims 0 x 2 pixels"),
     ]:
         with subtests.test(image=image, message=message):

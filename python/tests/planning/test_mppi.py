@@ -92,7 +92,7 @@ def test_the_last_command_bounds_the_next() -> None:
     change = QUICK.acceleration * QUICK.period, QUICK.yaw_acceleration * QUICK.period
     assert abs(v - 1.2) <= change[0] + 1e-6
     assert abs(omega + 0.5) <= change[1] + 1e-6
-    with pytest.raises(SettingsError, match="the last command is no finite"):
+    with pytest.raises(SettingsError, match="the last command is not a finite"):
         controller.command((1.0, 0.0, 0.0), (0.2, 0.0), last=(math.nan, 0.0))
 
 
@@ -122,7 +122,7 @@ def test_what_makes_no_sense_is_refused() -> None:
     with pytest.raises(SettingsError, match="radius and inflation"):
         inflated(walled_map(), math.nan)
     controller = Controller([baseline_motion()], straight(), options=QUICK)
-    with pytest.raises(SettingsError, match="the robot's pose is no pose"):
+    with pytest.raises(SettingsError, match="the robot's pose is not a pose"):
         controller.command((math.nan, 0.0, 0.0), (0.0, 0.0))
     with pytest.raises(SettingsError):
         controller.command((0.0, 0.0, 0.0), (math.nan, 0.0))

@@ -168,7 +168,7 @@ def test_an_unreachable_goal_says_how_near_it_came_and_what_would_help(planner: 
 
 @pytest.mark.parametrize("goal", [(math.nan, 0.0, 0.0), (1.0, math.inf, 0.0), (1.0, 2.0)])
 def test_a_goal_that_is_no_pose_is_refused(planner: Planner, goal: tuple[float, ...]) -> None:
-    with pytest.raises(SettingsError, match="the goal is no pose"):
+    with pytest.raises(SettingsError, match="the goal is not a pose"):
         planner.to(goal)  # type: ignore[arg-type]
 
 

@@ -56,7 +56,7 @@ def test_a_log_without_any_of_the_sensors_is_refused() -> None:
 
 @pytest.mark.parametrize("share", [-0.1, 1.0, float("nan")])
 def test_a_share_is_from_zero_to_below_one(share: float) -> None:
-    with pytest.raises(SettingsError, match="is no share"):
+    with pytest.raises(SettingsError, match="is not a share"):
         CLASSIFIER.labels(CLASSIFIER.answer(windows_of(0.0)), share)
 
 

@@ -40,7 +40,7 @@ def make_wire(name: str | None, options: WireOptions) -> RosWire:
     at_hand = wires_at_hand()
     if name is None and not at_hand:
         ways = "; ".join(way for *_, way in _WIRES)
-        raise SettingsError("nothing that speaks ROS is installed", advice=f"one of: {ways}")
+        raise SettingsError("no ROS transport is installed", advice=f"one of: {ways}")
     chosen = name or at_hand[0]
     place, way = next((place, way) for known, _, place, way in _WIRES if known == chosen)
     if chosen not in at_hand:

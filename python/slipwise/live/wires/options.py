@@ -29,5 +29,5 @@ class WireOptions:
         """
         text = str(self.domain) if self.domain is not None else os.environ.get("ROS_DOMAIN_ID", "") or "0"
         if not re.fullmatch("[0-9]{1,3}", text) or int(text) > 232:
-            raise SettingsError(f'"{text}" is no ROS domain', advice="domains are numbers from 0 to 232")
+            raise SettingsError(f'"{text}" is not a ROS domain', advice="domains are numbers from 0 to 232")
         return int(text)

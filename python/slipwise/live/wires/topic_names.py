@@ -19,6 +19,6 @@ def require_topic(name: str) -> str:
     first, *parts = name.split("/")
     if first or not parts or not all(_PART.fullmatch(part) for part in parts):
         raise SettingsError(
-            f'"{name}" is no name of a topic', advice='write it with its slash, such as "/odom"'
+            f'"{name}" is not the name of a topic', advice='write it with its slash, such as "/odom"'
         )
     return name

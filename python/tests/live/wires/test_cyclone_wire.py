@@ -91,7 +91,7 @@ def test_a_callback_that_fails_does_not_stop_the_others(wire: CycloneWire, other
 def test_unknown_types_and_relative_names_are_refused(wire: CycloneWire) -> None:
     with pytest.raises(SettingsError, match='no message type "nav_msgs/msg/Odometer"'):
         wire.subscribe("/odom", "nav_msgs/msg/Odometer", print)
-    with pytest.raises(SettingsError, match="no name of a topic"):
+    with pytest.raises(SettingsError, match="not the name of a topic"):
         wire.advertise("odom", ODOMETRY)
 
 

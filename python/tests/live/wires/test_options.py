@@ -20,5 +20,5 @@ def test_the_domain_given_wins_over_the_environment(monkeypatch: pytest.MonkeyPa
 @pytest.mark.parametrize("domain", ["233", "-1", "one", "²"])
 def test_no_domain_is_refused(domain: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", domain)
-    with pytest.raises(SettingsError, match="no ROS domain"):
+    with pytest.raises(SettingsError, match="not a ROS domain"):
         WireOptions().domain_number()
