@@ -102,7 +102,7 @@ def test_poses_that_answer_later_than_any_drive_are_not_good_before_their_clock_
     path = late_table(tmp_path, 1.7)
     result, _ = learned(path)
     assert not result.verdict.good
-    assert "later than any drive: their clocks are apart" in result.verdict.sentence
+    assert "later than any drive: their clocks differ" in result.verdict.sentence
     assert any("--pose-clock-offset auto" in text for text in result.verdict.advice)
     result, said = learned(path, pose_clock_offset="auto")
     assert "are added to the stamps of its poses" in said

@@ -98,4 +98,4 @@ def test_a_delay_of_seconds_is_real_where_stamps_were_compared_with_arrival(
     assert built.learning.model is not None
     verdict = built.learning.model.content.verdict
     assert verdict.good is (transport is Compared)
-    assert ("their clocks are apart" in verdict.sentence) is (transport is Scripted)
+    assert ("their clocks differ" in verdict.sentence) is (transport is Scripted)
