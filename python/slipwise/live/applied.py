@@ -126,8 +126,8 @@ class AppliedModel:
     def _why_held(self, p: Parameter, goal: float, start: float) -> str:
         learned = " +- ".join(estimate_texts(p.value, p.std))
         return (
-            f"{p.name} is held at {number_text(goal, 3)}: {learned} was learned, too far from the start"
-            f" {number_text(start, 3)} for within = {self._rules.within:g}"
+            f"{p.name} is held at {number_text(goal, 3)}: learned {learned} is farther from the start"
+            f" {number_text(start, 3)} than [live.apply] within = {self._rules.within:g} allows"
         )
 
 

@@ -13,7 +13,7 @@ from slipwise.errors import SlipwiseError
 from slipwise.live.applied import start_value, values_of
 from slipwise.live.outputs import Validity
 from slipwise.live.said import Said
-from slipwise.live.validity import STATES, ModelValidity
+from slipwise.live.validity import STATES, ModelValidity, model_words
 from slipwise.logs.contradiction import Contradiction
 from slipwise.models import Model
 
@@ -125,8 +125,7 @@ class Learning:
         if self.validity.whole == "estimated" and self.model.content.verdict.good:
             self.valid = self.model
         if self.validity.whole != before and not contradicted:
-            why = self.validity.why.removeprefix("The model ")
-            self._said.note(t, f"model {STATES[self.validity.whole]}: {why[:1].lower()}{why[1:]}")
+            self._said.note(t, model_words(self.validity.whole, self.validity.why))
 
     @property
     def valid_now(self) -> Model | None:

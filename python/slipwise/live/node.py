@@ -29,7 +29,7 @@ from slipwise.live.said import Said
 from slipwise.live.samples import Override, Pose, Request, RunStart, Sample, SurfaceCue, Unusable
 from slipwise.live.status import DrivenPath, Identity, Now, parameters_now, status_of
 from slipwise.live.transport import Transport
-from slipwise.live.validity import STATES
+from slipwise.live.validity import model_words
 from slipwise.live.watch.watcher import Watcher
 from slipwise.models import Model
 
@@ -234,7 +234,7 @@ class LiveNode:
         for name in applied.values:
             why = applied.held.get(name)
             if why is None:
-                said.ends(t, f"held {name}", f"{name} is applied again")
+                said.ends(t, f"held {name}", f"{name} follows the model again")
             else:
                 said.begins(t, f"held {name}", why)
 
@@ -283,7 +283,7 @@ class LiveNode:
             parts.said.note(t, "no parameters are applied: live.apply.mode is off")
         elif valid is None:
             validity = parts.learning.validity
-            parts.said.note(t, f"no parameters are applied: model {STATES[validity.whole]}: {validity.why}")
+            parts.said.note(t, f"no parameters are applied: {model_words(validity.whole, validity.why)}")
         else:
             parts.applied.jump(valid, parts.learning.validity.of)
             self._hand_on(t)

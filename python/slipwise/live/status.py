@@ -106,7 +106,7 @@ def status_of(
 
 def _state(learning: Learning, intake: Intake, now: Now) -> tuple[str, str]:
     if now.stuck:
-        return "stuck", "the robot does not move as the model says it must"
+        return "stuck", "the robot does not move as the model predicts"
     if intake.newest_pose is None:
         return "waiting", "no pose yet"
     if now.waits:
@@ -114,7 +114,7 @@ def _state(learning: Learning, intake: Intake, now: Now) -> tuple[str, str]:
     if intake.why_not:
         return "not learning", intake.why_not
     if learning.segments == 0:
-        return "waiting", "no stretch of driving is complete yet"
+        return "waiting", "no segment is complete yet"
     return "learning", f"{count_text(learning.segments, 'segment')} so far"
 
 

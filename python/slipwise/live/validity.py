@@ -18,6 +18,12 @@ STATES: dict[Validity, str] = {
 }
 
 
+def model_words(state: Validity, why: str) -> str:
+    """Return a state of the model with its reason, such as `model valid: misses by 0.1 m ...`."""
+    why = why.removeprefix("The model ")
+    return f"model {STATES[state]}" + (f": {why[:1].lower()}{why[1:]}" if why else "")
+
+
 class Hysteresis:
     """A state that changes only where several judgements in a row say so."""
 

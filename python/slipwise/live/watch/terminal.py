@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from slipwise.live.outputs import Note, Output, Status
+from slipwise.live.validity import model_words
 from slipwise.live.watch.history import History
 from slipwise.live.watch.output_thread import OutputThread
 from slipwise.live.watch.status_texts import error_texts, nis_text, slip_texts, stamp_text
@@ -132,8 +133,8 @@ def state_line(status: Status) -> str:
     """Return the state of the node as one line of text."""
     parts = [
         f"{status.state}: {status.why}" if status.why else status.state,
-        f"model {status.validity}" + (f": {status.validity_why}" if status.validity_why else ""),
-        f"{status.segments} segments",
+        model_words(status.validity, status.validity_why),
+        *([] if "segment" in status.why else [f"{status.segments} segments"]),
     ]
     parts += [
         f"{error.name} error {error.learned} {error.unit} (baseline {error.baseline})"

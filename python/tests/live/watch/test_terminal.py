@@ -93,7 +93,7 @@ def test_a_reader_that_is_gone_does_not_end_the_node() -> None:
 
 def test_the_line_of_state_says_what_is_known() -> None:
     line = state_line(driven_status())
-    assert line.startswith("40.0 s  learning; model estimated: ")
+    assert line.startswith("40.0 s  learning; model valid: ")
     for part in (
         "position error",
         "baseline",
