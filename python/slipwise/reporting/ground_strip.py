@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers, vertical_lines
 from slipwise.reporting.markup import legend
 from slipwise.reporting.palette import ALARM_COLOUR, BAND, MEASURED, surface_colour, transparent
-from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
+from slipwise.reporting.thinning import SMALL_POINTS, thinned, thinning_note
 
 Floats = NDArray[np.float64]
 UNNAMED = "not named"  # too short a visit to be remembered, or not decided
@@ -65,7 +65,7 @@ def strip_html(strip: GroundStrip, *, title: str) -> str:
             + vertical_lines(strip.boundaries, "#9aa5b1", dash="dot", yref="y"),
         },
         height=200,
-        caption=thinning_note(len(strip.x), CURVE_POINTS),
+        caption=thinning_note(len(strip.x), SMALL_POINTS),
     )
     return legend(keys) + figure.html()
 
@@ -75,14 +75,14 @@ def _colour(name: str, names: Sequence[str]) -> str:
 
 
 def _areas(strip: GroundStrip) -> list[dict[str, Any]]:
-    keep = thinned(len(strip.x))
+    keep = thinned(len(strip.x), SMALL_POINTS)
     return [
         {
             "type": "scatter",
             "mode": "lines",
             "name": baseline_label(name),
             "x": numbers(strip.x[keep]),
-            "y": numbers(strip.probability[keep, place]),
+            "y": numbers(strip.probability[keep, place].round(4)),
             "stackgroup": "surfaces",
             "line": {"color": _colour(name, strip.names), "width": 0, "shape": "vh"},
             "fillcolor": transparent(_colour(name, strip.names), 0.8),

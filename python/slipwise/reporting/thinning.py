@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-CURVE_POINTS = 800  # of one curve over the page; more cannot be distinguished on a screen
+CURVE_POINTS = 400  # of one curve over the page; more cannot be distinguished on a screen
 SMALL_POINTS = 150  # of one curve in a small figure
 
 

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from reporting.page_parts import contents_of, figures_of, text_of
 from reporting.synthetic_results import make_results, with_model, with_verdict
 
-from slipwise.calibration.next_step import verdict_label
+from slipwise.calibration.next_step import after_learning, verdict_label
 from slipwise.calibration.result import Verdict
 from slipwise.models.summary import summarise
 from slipwise.reporting.sections.verdict import VerdictSection
@@ -94,7 +95,7 @@ def test_bad_model_is_not_to_be_used_or_exported() -> None:
     verdict = Verdict(False, "No.", (), ("Record wheel speeds.",))
     text = text_of(VerdictSection().html(contents_of(with_verdict(make_results(), verdict))))
     assert (
-        "What to do Do not use this model. Next: do what the lines below say, then calibrate again. "
+        f"What to do Do not use this model. {' '.join(after_learning(verdict, Path('model.yaml')))} "
         "Record wheel speeds." in text
     )
     assert "slipwise export" not in text
