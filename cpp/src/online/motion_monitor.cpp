@@ -21,9 +21,11 @@ constexpr double kMisfit = 0.1;           // of the expected motion that a learn
 constexpr double kVisible = 25.0;         // normalised square of the expected motion from which on its lack would show
 constexpr double kOdds = 4.0;             // logarithm of the odds at which a window says that the robot is stuck
 constexpr double kStillAsked =
-    0.5;                         // of the window's mean input, below which the robot may have stopped as it was told
-constexpr double kLately = 0.1;  // [s] of the last inputs
-constexpr double kDof = 8.0;     // of the Student t by which explanations are weighed
+    0.5;                           // of the window's mean input, below which the robot may have stopped as it was told
+constexpr double kLateStep = 0.1;  // [s] in such steps it is tried whether the body or its poses are late,
+constexpr int kLateSteps = 8;      // by so many of them at most
+constexpr double kLately = 0.1;    // [s] of the last inputs
+constexpr double kDof = 8.0;       // of the Student t by which explanations are weighed
 constexpr double kExplained = 25.0;  // normalised square beyond which being stuck does not explain a window either
 constexpr double kConfirmed = 0.2;   // [s] for which windows must say so
 constexpr double kForgotten = 2.0;   // [s] without expected motion, after which nobody knows
@@ -34,6 +36,19 @@ double log_student(double square, const Eigen::Matrix3d& scale) {
 }
 
 Pose2 at_pose(const MeasuredPose& pose) { return {pose.x, pose.y, pose.yaw}; }
+
+/// The motion between two poses, turned by whole turns to be next to what was expected.
+Eigen::Vector3d motion_between(const MeasuredPose& from, const MeasuredPose& to, const Eigen::Vector3d& expected) {
+  Eigen::Vector3d measured = between(at_pose(from), at_pose(to)).vector();
+  measured.z() = expected.z() + wrap_angle(measured.z() - expected.z());
+  return measured;
+}
+
+/// Of a motion that goes as expected, a learned model being a little off.
+Eigen::Matrix3d covariance_of_motion(const MotionLeg& leg, const Eigen::Matrix3d& noise) {
+  const Eigen::Vector3d expected = leg.motion.vector();
+  return leg.covariance() + noise + kMisfit * kMisfit * expected * expected.transpose();
+}
 
 }  // namespace
 
@@ -75,10 +90,9 @@ Eigen::Matrix3d MotionMonitor::pose_noise(const Pose2& motion) const {
 
 MotionMonitor::Finding MotionMonitor::judge(const MotionLeg& leg, const MeasuredPose& from, const MeasuredPose& to) {
   const Eigen::Vector3d expected = leg.motion.vector();
-  Eigen::Vector3d measured = between(at_pose(from), at_pose(to)).vector();
-  measured.z() = expected.z() + wrap_angle(measured.z() - expected.z());
+  const Eigen::Vector3d measured = motion_between(from, to, expected);
   const Eigen::Matrix3d noise = pose_noise(leg.motion);
-  const Eigen::Matrix3d moving = leg.covariance() + noise + kMisfit * kMisfit * expected * expected.transpose();
+  const Eigen::Matrix3d moving = covariance_of_motion(leg, noise);
   const Eigen::Vector3d weighted = solve_innovation(Eigen::Matrix3d(leg.covariance() + noise), expected);
   if (normalised_square(expected, moving) < kVisible) {
     state_.fraction.reset();
@@ -89,12 +103,29 @@ MotionMonitor::Finding MotionMonitor::judge(const MotionLeg& leg, const Measured
   const double part = std::clamp(fraction, 0.0, kStuckFraction);
   const Eigen::Matrix3d still = noise + part * part * leg.covariance();
   const double still_square = normalised_square(measured - part * expected, still);
-  const double odds =
-      log_student(still_square, still) - log_student(normalised_square(measured - expected, moving), moving);
-  if (odds > kOdds && still_square < kExplained) {
+  log_still_ = log_student(still_square, still);
+  if (log_still_ > log_moving(leg, from, to) + kOdds && still_square < kExplained) {
     return Finding::Stuck;
   }
   return fraction > kMovesFraction ? Finding::Moves : Finding::Between;
+}
+
+double MotionMonitor::log_moving(const MotionLeg& leg, const MeasuredPose& from, const MeasuredPose& to) const {
+  const Eigen::Vector3d expected = leg.motion.vector();
+  const Eigen::Matrix3d moving = covariance_of_motion(leg, pose_noise(leg.motion));
+  return log_student(normalised_square(motion_between(from, to, expected) - expected, moving), moving);
+}
+
+bool MotionMonitor::is_late(const LegKnowledge& known, const MeasuredPose& from, const MeasuredPose& to,
+                            const Model& model) const {
+  for (int step = 1; step <= kLateSteps; ++step) {
+    const double late = kLateStep * step;
+    const auto leg = model.leg(known, from.t - late, to.t - late);
+    if (leg && log_still_ <= log_moving(*leg, from, to) + kOdds) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// The alarm comes once windows agree for a while, and goes when the robot moves or nothing is expected of it for long.
@@ -150,6 +181,9 @@ void MotionMonitor::take(const MeasuredPose& pose, const Model& model) {
   const bool asked = lately > 0.0 && lately >= kStillAsked * model.asked(first.t, pose.t);
   if (finding == Finding::Stuck && !asked) {
     finding = Finding::Unknown;
+  }
+  if (finding == Finding::Stuck && !state_.stuck && is_late(known, first, pose, model)) {
+    finding = Finding::Between;
   }
   follow(finding, pose.t, known);
 }

@@ -23,8 +23,9 @@ struct MotionState {
 
 /// Compares the motion between measured poses, over a window of 0.6 s, with what was expected from the inputs before
 /// the model could learn from it. Two explanations are weighed: the robot moves as expected, with all that is unsure of
-/// the model, its lag and its delay; or it moves by a fifth of that at most. While the robot is stuck the model of
-/// before is kept, for the learner soon takes what it sees for slip.
+/// the model, its lag and its delay; or it moves by a fifth of that at most. A robot that moves as was expected of it a
+/// moment ago is not stuck: where inputs reverse, poses that are late look like none. While the robot is stuck the
+/// model of before is kept, for the learner soon takes what it sees for slip.
 class MotionMonitor {
  public:
   /// What is known at a time, what it expects of a stretch, nothing where the inputs are not known, and how fast the
@@ -51,6 +52,9 @@ class MotionMonitor {
 
   void take(const MeasuredPose& pose, const Model& model);
   Finding judge(const MotionLeg& leg, const MeasuredPose& from, const MeasuredPose& to);
+  /// Whether the window is explained by what was expected a moment before it, about as well as by a robot at rest.
+  bool is_late(const LegKnowledge& known, const MeasuredPose& from, const MeasuredPose& to, const Model& model) const;
+  double log_moving(const MotionLeg& leg, const MeasuredPose& from, const MeasuredPose& to) const;
   void follow(Finding finding, double t, const LegKnowledge& known);
   Eigen::Matrix3d pose_noise(const Pose2& motion) const;
 
@@ -65,6 +69,7 @@ class MotionMonitor {
   std::optional<double> suspected_;     ///< since when windows say that the robot is stuck [s]
   double expected_ = 0.0;               ///< when motion was expected last [s]
   std::optional<LegKnowledge> before_;  ///< what was known before the robot was stuck
+  double log_still_ = 0.0;              ///< of the last window that was judged, by a robot that does not move
   double asked_ = -std::numeric_limits<double>::infinity();
 };
 
