@@ -122,9 +122,9 @@ def _faults_of_handing_on(said: list[str]) -> list[str]:
             found += ["it was handed on against a contradiction"] if standing else []
         elif "are withdrawn" in text:
             handed = False
-        elif text.startswith("nothing that was learned is used"):
+        elif text.startswith("the learned model is not used"):
             standing = True
-        elif text.startswith("poses and inputs contradict each other no longer"):
+        elif text.startswith("poses and inputs agree again"):
             standing = False
     return [*found, *(["it was handed on and not withdrawn"] if handed else [])]
 

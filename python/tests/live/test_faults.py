@@ -121,7 +121,7 @@ def second_robot(what: str) -> Iterable[Sample]:
 def test_a_second_robot_on_the_same_topic_teaches_nothing(what: str) -> None:
     _, transport = run_node(list(second_robot(what)))
     check_said_once(transport, "two sources speak on the")
-    assert any(said == "learning goes on" for said in transport.said)
+    assert any(said == "learning resumed" for said in transport.said)
     script = [s for s in second_robot(what) if stamped(s) < END + 0.9]
     before, _ = run_node([s for s in drive() if stamped(s) < BEGIN + 0.5])
     after, _ = run_node(script)
@@ -147,7 +147,7 @@ def test_an_operator_who_drives_past_the_commands_teaches_nothing() -> None:
     until = [s for s in script if isinstance(s, Override) or stamped(s) < END + RECOVERY]
     after, transport = run_node(until)
     assert farthest(learned(after), learned(before)) <= 0.1
-    check_said_once(transport, "nothing is learned: an operator drives")
+    check_said_once(transport, "learning paused: an operator drives")
     whole, _ = run_node(script)
     assert whole.learning.segments > after.learning.segments + 10
 
