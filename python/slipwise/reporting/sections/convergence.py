@@ -173,7 +173,7 @@ def _weights_figure(
             "yaxis": axis("weight [-]", range=[0, 1]),
             "shapes": timeline.shapes() + _alarm_marks(timeline, history),
         },
-        height=150,
+        height=140,
     )
     last = zip(strokes.items(), weights[-1].tolist(), strict=True)
     keys = (

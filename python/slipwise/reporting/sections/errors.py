@@ -64,7 +64,7 @@ def _figure(contents: Contents, found: list[Predictions], what: str, title: str)
             "shapes": timeline.shapes(),
         },
         caption=thinning_note(max(len(part.t_start) for part in found), CURVE_POINTS),
-        height=205,
+        height=190,
         log_scale=True,
     )
 

@@ -134,7 +134,7 @@ def _figure(timeline: Timeline, series: _Series) -> Figure | None:
                 *timeline.shapes(),
             ],
         },
-        height=195,
+        height=180,
         caption=f"{caption} {thinning_note(len(y))}".strip(),
     )
 
