@@ -12,6 +12,7 @@
 #include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/axis_stepper.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
 namespace {
@@ -91,8 +92,10 @@ class ActuatorWalk {
         end_(knot_of(window.end)),
         model_start_(window.initial && window.known ? Knot{window.known->until, kFixed} : start_),
         warm_up_(warm_up()),
-        cursor_v_(inputs, actuator.delay_v, kSpeedPlaces.delay, model_start_.t - warm_up_, window.end),
-        cursor_omega_(inputs, actuator.delay_omega, kTurnPlaces.delay, model_start_.t - warm_up_, window.end),
+        rounding_(warm_up_ > 0.0 ? 0.0 : kSameStamp),
+        cursor_v_(inputs, actuator.delay_v, kSpeedPlaces.delay, model_start_.t - warm_up_ + rounding_, window.end),
+        cursor_omega_(inputs, actuator.delay_omega, kTurnPlaces.delay, model_start_.t - warm_up_ + rounding_,
+                      window.end),
         v_(speed_, kSpeedPlaces),
         vy_(speed_, kSpeedPlaces),
         omega_(turn_, kTurnPlaces) {
@@ -200,7 +203,7 @@ class ActuatorWalk {
     while (now.t < end_.t) {
       const double change = std::min(cursor_v_.next_change(), cursor_omega_.next_change());
       Knot next = end_;
-      if (change < end_.t) {
+      if (change < end_.t - rounding_) {
         next = cursor_v_.next_change() <= change ? cursor_v_.change_knot() : cursor_omega_.change_knot();
       }
       subdivide(now, next, out);
@@ -274,6 +277,9 @@ class ActuatorWalk {
   Knot end_;
   Knot model_start_;
   double warm_up_;
+  /// [s] Without lag, the derivative by a delay jumps where a change passes an end of the window, and must not hang on
+  /// the last bit of a stamp: what changes there by rounding alone has changed at the start, and has not at the end.
+  double rounding_;
   DelayedCursor cursor_v_;
   DelayedCursor cursor_omega_;
   Axis v_, vy_, omega_;

@@ -62,7 +62,7 @@ class Drive {
     while (later(to, now)) {
       double next = std::min(to, now + kLongest);
       const KnownMotion* motion = span_.measured && !set_ ? &*span_.measured : nullptr;
-      const bool measured = motion != nullptr && motion->t < next;
+      const bool measured = motion != nullptr && later(next, motion->t);
       if (measured) {
         next = std::max(motion->t, now);
       } else if (now < span_.start && span_.start < next) {
@@ -70,14 +70,14 @@ class Drive {
       }
       const CarState before = state_;
       state_ = advanced(car_, state_, command, next - now);
-      if (measured) {
-        state_.speed = motion->speed;
-        set_ = true;
-      }
       if (!later(span_.start, now) && later(next, now)) {
         const CarState middle{.speed = 0.5 * (before.speed + state_.speed),
                               .steering = 0.5 * (before.steering + state_.steering)};
         pieces_.add(now, with_rest(car_twist(car_, middle), 0.5 * (now + next)), next - now);
+      }
+      if (measured) {  // from here on
+        state_.speed = motion->speed;
+        set_ = true;
       }
       now = next;
     }

@@ -6,10 +6,13 @@
 #include <array>
 #include <cmath>
 
+#include "slipwise/linear/same_stamp.hpp"
+
 namespace slipwise {
 namespace {
 
-constexpr double kRounding = 1e-9;   // [m/s or rad/s]; what is slower is what rounding leaves of zero
+constexpr double kRounding =
+    1e-9;  // [m/s or rad/s]; what is slower, or differs by less, is what rounding leaves of zero
 constexpr double kRateStride = 0.2;  // [s] over which measured accelerations are taken
 
 /// A twist in an axis: once, or once for each side.
@@ -44,15 +47,16 @@ void add_wheels(AxisRange& range, const CommandLimits& limits, LimitedAxis axis,
   std::size_t from = 0;
   for (std::size_t i = 0; i < record.t.size(); ++i) {
     const double seconds = record.t[i] - record.t[from];
+    const bool apart = !later(kRateStride, seconds);
     const std::array<double, 2> now = in_axis(limits, axis, record.wheels[i]);
     const std::array<double, 2> before = in_axis(limits, axis, record.wheels[from]);
     for (std::size_t side = 0; side < now.size(); ++side) {
       range.speeds.push_back(std::abs(now.at(side)));
-      if (seconds >= kRateStride) {
+      if (apart) {
         range.rates.push_back(std::abs(now.at(side) - before.at(side)) / seconds);
       }
     }
-    from = seconds >= kRateStride ? i : from;
+    from = apart ? i : from;
   }
 }
 
@@ -69,7 +73,8 @@ AxisRange axis_range(std::span<const WheelRecord> records, const CommandLimits& 
   std::ranges::sort(range.commands, {}, &Asked::speed);
   std::ranges::sort(range.speeds);
   std::ranges::sort(range.rates);
-  const auto repeated = std::ranges::unique(range.commands, {}, &Asked::speed);
+  const auto repeated = std::ranges::unique(
+      range.commands, [](double one, double next) { return next - one <= kRounding; }, &Asked::speed);
   range.commands.erase(repeated.begin(), repeated.end());
   return range;
 }

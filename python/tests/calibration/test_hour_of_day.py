@@ -75,11 +75,19 @@ VEHICLES = {
 def test_on_real_logs_the_hour_the_frame_and_the_order_change_nothing(
     real_log_dir: Path, tmp_path: Path
 ) -> None:
-    """The shortest logs; all with SLIPWISE_ALL_LOGS=1: two fail from commands (by 0.03 and 0.4 sigma)."""
+    """Few logs; all with SLIPWISE_ALL_LOGS=1.
+
+    Of those, two fail from commands with stamps of today, of warthog_windows: sand_9_25_14h13s47 (by 0.6 sigma)
+    and gravel_8_6_11h37s32 (another structure).
+    """
     tables = sorted(real_log_dir.rglob("*.csv.gz"), key=lambda path: path.stat().st_size)
     vehicles = sorted((real_log_dir.parent / "vehicles").glob("*.csv.gz"))
     if os.environ.get("SLIPWISE_ALL_LOGS") != "1":
-        tables, vehicles = tables[:3], []
+        tables = [
+            *tables[:3],
+            real_log_dir / "robotino" / "table_gray.csv.gz",
+        ]  # inputs change where windows begin
+        vehicles = []
     logs = [(path, LogOptions()) for path in tables]
     for path in vehicles:
         logs += [(path, each) for name, each in VEHICLES.items() if path.name.startswith(name)]
