@@ -71,12 +71,12 @@ def calibrate(
       slipwise calibrate drive.mcap -o model.yaml
       slipwise calibrate drive.mcap --pose-topic /rtk/odom --input command
       slipwise calibrate monday.csv tuesday.csv.gz --basis odd-even-10 --no-report
-      slipwise calibrate drive.csv --basis drive-5 --set estimator=delayed-state --set smoothing.smooth=true
+      slipwise calibrate drive.csv --set estimator=iekf --basis drive-5
       slipwise calibrate towing.mcap --set body_force.frame=body
       slipwise calibrate two_minutes.mcap --prior fleet/fleet.yaml
       slipwise calibrate --memory sand.csv asphalt.csv -o monday.yaml
-      slipwise calibrate --memory monday.yaml tuesday.csv -o tuesday.yaml --surface sand
-      slipwise calibrate --memory sand.csv asphalt.csv --surface labels.csv -o monday.yaml
+      slipwise calibrate --memory mon.yaml tue.csv -o tue.yaml --surface sand
+      slipwise calibrate --memory a.csv b.csv --surface labels.csv -o mon.yaml
       slipwise calibrate drive.csv --no-report --json - | jq .verdict
     """  # noqa: D301
     from slipwise.cli.command_line import command_line

@@ -88,7 +88,7 @@ def evaluate(
     Examples:
       slipwise evaluate drive.mcap
       slipwise evaluate drive.mcap --model model.yaml --horizons 2,5
-      slipwise evaluate drive.mcap --model monday.yaml --model tuesday.yaml --methods monday.yaml,tuesday.yaml
+      slipwise evaluate drive.mcap --model monday.yaml --model tuesday.yaml
       slipwise evaluate drive.csv --input wheel --methods none,edd-2,odd-even-10,auto
       slipwise evaluate drive.csv --input wheel --methods icr-3,slip-ratio-ekf,slip-ratio-smo,auto
       slipwise evaluate drive.csv --methods gradient-descent,ekf-thesis,iekf,delayed-state --basis drive-5
