@@ -19,6 +19,7 @@ BUILD = ROOT / "build/package"
 PIP = (sys.executable, "-m", "pip", "install")
 NINJA_STEP = re.compile(r"^\[(\d+)/(\d+)\]")
 PIP_STEP = re.compile(r"^(?:Collecting|Downloading|Installing collected packages) *:? *([\w.-]*)")
+PROCESSOR_MINUTES = 7  # of the first compilation, without a cache of a compiler
 EVERY = 20.0  # s between lines where nobody watches; a terminal has one line that changes
 
 
@@ -110,8 +111,20 @@ def installation() -> Job:
     return Job("installing slipwise", ((*PIP, *options),), pip_progress)
 
 
+def announcement() -> str:
+    """Return what the first build does and costs: GCC 12 was measured."""
+    cores = os.cpu_count() or 1
+    here = max(1, round(PROCESSOR_MINUTES / cores))
+    return (
+        f"compiling the C++ core, once: about {PROCESSOR_MINUTES} minutes of one core, {here} on {cores}; "
+        "pip installs what slipwise needs beside it"
+    )
+
+
 def main(parts: list[str]) -> int:
     """Build; `parts` of pyproject.toml are installed beside, where any are named."""
+    if not (BUILD / "build.ninja").exists():
+        print(announcement(), flush=True)
     first = [compilation(), *([downloads(parts)] if parts else [])]
     for jobs in (first, [installation()]):
         watch(jobs, sys.stdout)

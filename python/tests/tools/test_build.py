@@ -4,7 +4,8 @@
 import io
 import sys
 
-from tools.build import Job, ninja_progress, pip_progress, watch
+import pytest
+from tools.build import PROCESSOR_MINUTES, Job, announcement, ninja_progress, pip_progress, watch
 
 
 def test_steps_of_ninja_and_of_pip_are_recognised() -> None:
@@ -26,3 +27,10 @@ def test_a_job_ends_at_the_first_command_that_fails_and_keeps_what_it_said() -> 
     job = Job("compiling", (fails, (sys.executable, "-c", "print('never')")), ninja_progress)
     watch([job], io.StringIO())
     assert (job.state, job.code, job.log) == ("failed", 3, ["why"])
+
+
+def test_the_first_build_says_at_its_start_what_it_does_and_costs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("os.cpu_count", lambda: 4)
+    text = announcement()
+    assert f"{PROCESSOR_MINUTES} minutes of one core" in text
+    assert "2 on 4" in text
