@@ -77,17 +77,14 @@ def test_on_real_logs_the_hour_the_frame_and_the_order_change_nothing(
 ) -> None:
     """Few logs; all with SLIPWISE_ALL_LOGS=1.
 
-    Of those, two fail from commands with stamps of today, of warthog_windows: sand_9_25_14h13s47 (by 0.6 sigma)
-    and gravel_8_6_11h37s32 (another structure).
+    With stamps of today, two of warthog_windows fail from commands: sand_9_25_14h13s47 (by 0.6
+    sigma) and gravel_8_6_11h37s32 (another structure).
     """
     tables = sorted(real_log_dir.rglob("*.csv.gz"), key=lambda path: path.stat().st_size)
     vehicles = sorted((real_log_dir.parent / "vehicles").glob("*.csv.gz"))
     if os.environ.get("SLIPWISE_ALL_LOGS") != "1":
-        tables = [
-            *tables[:3],
-            real_log_dir / "robotino" / "table_gray.csv.gz",
-        ]  # inputs change where windows begin
-        vehicles = []
+        changes_at_starts = real_log_dir / "robotino" / "table_gray.csv.gz"
+        tables, vehicles = [*tables[:3], changes_at_starts], []
     logs = [(path, LogOptions()) for path in tables]
     for path in vehicles:
         logs += [(path, each) for name, each in VEHICLES.items() if path.name.startswith(name)]
