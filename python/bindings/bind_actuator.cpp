@@ -92,7 +92,7 @@ void bind_actuator(nb::module_& m) {
       .def_ro("gain_omega", &CommandLimits::gain_omega)
       .def(
           "settled", [](const CommandLimits& self, const BodyTwist& command) { return settled(self, command); },
-          "command"_a, "What is left of a command that is held for long.");
+          "command"_a, "The part of a command that remains if it is held for long.");
   m.def("limited_inputs", nb::overload_cast<const InputHistory&, const CommandLimits&, double>(&limited_inputs),
         "commands"_a, "limits"_a, "longest_piece"_a,
         "The held commands after dead-band, saturation and rate limits; ramps become short held pieces [s].");

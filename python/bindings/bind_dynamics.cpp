@@ -69,7 +69,7 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<nb::object, nb::object>(), "rates"_a, "jacobians"_a.none(),
            "Rates [states, N] of states [states, N], an input [inputs] and parameters [parameters, N]; Jacobians by "
            "state and by parameters of one state, or None for central differences.");
-  nb::class_<DynamicsNoise>(m, "DynamicsNoise", "What is measured of a state, and what disturbs it.")
+  nb::class_<DynamicsNoise>(m, "DynamicsNoise", "The measured part of a state, and its disturbance.")
       .def(
           "__init__",
           [](DynamicsNoise* self, std::vector<Eigen::Index> measured, std::vector<bool> angle,

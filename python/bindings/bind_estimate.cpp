@@ -74,7 +74,7 @@ void bind_settings(nb::module_& m) {
             force.pass(estimate, seconds);
             return estimate;
           },
-          "estimate"_a, "seconds"_a, "What is known after some time in which nothing was measured [s].");
+          "estimate"_a, "seconds"_a, "The estimate after some time without a measurement [s].");
   nb::class_<CausalFilterSettings>(m, "CausalFilterSettings")
       .def(nb::init<>())
       .def_rw("prior", &CausalFilterSettings::prior)

@@ -44,7 +44,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("car", &StreamSettings::car)
       .def_rw("sources", &StreamSettings::sources)
       .def_rw("heading_only", &StreamSettings::heading_only);
-  nb::class_<HypothesisSettings>(m, "HypothesisSettings", "What is learned.")
+  nb::class_<HypothesisSettings>(m, "HypothesisSettings", "What the learner learns.")
       .def(nb::init<>())
       .def_rw("bases", &HypothesisSettings::bases)
       .def_rw("dynamics", &HypothesisSettings::dynamics)
@@ -264,7 +264,7 @@ void bind_online(nb::module_& m) {
       .def_prop_ro("sources", locked([](const MotionLearner& learner) {
                      return learned_sources(learner.sources(), learner.noise_scale());
                    }),
-                   "What is known of each source of poses, where there are several.")
+                   "Estimates of each pose source, where there are several.")
       .def("push_attitude", locked(&MotionLearner::push_attitude), "t"_a, "roll"_a, "pitch"_a)
       .def_prop_ro("attitude_mounting", locked(&MotionLearner::attitude_mounting),
                    "How the sensor of roll and pitch sits on the robot.")
@@ -300,7 +300,7 @@ void bind_online(nb::module_& m) {
            "The surface changes now: to the one of this name, or to another where it is empty.")
       .def("completed", locked(&MotionLearner::completed), "A copy whose run has ended.")
       .def("probable_surfaces", locked(&MotionLearner::probable_surfaces),
-           "How probable each surface is to be the one under the robot; nothing where none are remembered.")
+           "How probable each surface is to be the one under the robot; empty if none are remembered.")
       .def("surfaces", locked(&MotionLearner::surfaces), "The surfaces that are remembered, as they are known now.")
       .def("on_surface", locked([](const MotionLearner& learner, const Surface& surface, std::size_t structure) {
              return learner.on_surface(surface, structure_of(structure));

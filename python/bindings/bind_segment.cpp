@@ -33,7 +33,7 @@ void bind_ground(nb::module_& m) {
       .def(nb::init<Eigen::MatrixXd, Eigen::Vector2d, double>(), "elevation"_a, "origin"_a, "cell"_a)
       .def("height", &ElevationMap::height, "x"_a, "y"_a)
       .def("holds", &ElevationMap::holds, "x"_a, "y"_a);
-  nb::class_<Ground>(m, "Ground", "What is known of the ground under a segment.")
+  nb::class_<Ground>(m, "Ground", "The ground under a segment.")
       .def_static(
           "grade", [](double rise_x, double rise_y) { return std::make_shared<const Ground>(Grade{rise_x, rise_y}); },
           "rise_x"_a, "rise_y"_a, "A plane that rises by this per metre along the axes of the segment's first pose.")

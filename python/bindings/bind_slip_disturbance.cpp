@@ -19,7 +19,7 @@ void bind_slip_disturbance(nb::module_& m) {
       .def_rw("time_constants", &DisturbanceSettings::time_constants)
       .def_rw("white", &DisturbanceSettings::white)
       .def_rw("weighting", &DisturbanceSettings::weighting);
-  nb::class_<MotionPosterior>(m, "MotionPosterior", "What is known of a motion model at one time.")
+  nb::class_<MotionPosterior>(m, "MotionPosterior", "The posterior of a motion model at one time.")
       .def(
           "__init__",
           [](MotionPosterior* self, const MotionModel& model, const Estimate& estimate,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bindings of several sources of poses: what is said of them, and what is learned.
+// Bindings of several sources of poses: their settings and estimates.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
@@ -43,7 +43,7 @@ std::vector<LearnedSource> learned_sources(const KnownSources& sources, const Ei
 }
 
 void bind_sources(nb::module_& m) {
-  nb::class_<SourceSettings>(m, "SourceSettings", "What is said of a source of poses before it measures.")
+  nb::class_<SourceSettings>(m, "SourceSettings", "Settings of a pose source before it measures.")
       .def(nb::init<>())
       .def_rw("sensor", &SourceSettings::sensor)
       .def_rw("late", &SourceSettings::late)
@@ -51,7 +51,7 @@ void bind_sources(nb::module_& m) {
       .def_rw("sensor_std_xy", &SourceSettings::sensor_std_xy)
       .def_rw("sensor_std_yaw", &SourceSettings::sensor_std_yaw)
       .def_rw("poorest", &SourceSettings::poorest);
-  nb::class_<LearnedSource>(m, "LearnedSource", "What is known of a source of poses.")
+  nb::class_<LearnedSource>(m, "LearnedSource", "Estimates of a pose source.")
       .def_ro("calibration", &LearnedSource::calibration, "Lateness [s], x, y [m] and yaw [rad] in base_link.")
       .def_ro("segments", &LearnedSource::segments, "Segments learned between its poses.")
       .def_ro("seen", &LearnedSource::seen, "Of each fix, whether there was a segment; [fixes].")

@@ -53,7 +53,7 @@ WheelReadings readings_at(Eigen::Index row, const Rows& speed, const Rows& steer
 
 void check_readings(const WheelLayout& layout, const Rows& speed, const Rows& steering, const Rows& hinge,
                     const Rows& steering_rate) {
-  // A bent vehicle is never taken for a straight one, nor steering that moves contacts for one at rest.
+  // A bent vehicle never passes as a straight one, nor steering that moves contacts for one at rest.
   const bool missing =
       speed.rows() > 0 && ((layout.hinged() && hinge.rows() == 0) || (layout.pivoted() && steering_rate.rows() == 0));
   const bool uneven =

@@ -10,7 +10,7 @@
 
 namespace slipwise::bindings {
 
-/// What is known of a source of poses.
+/// Estimates of a pose source.
 struct LearnedSource {
   Estimate calibration;                            ///< lateness [s], x, y [m], yaw [rad]
   std::size_t segments;                            ///< learned between its poses

@@ -29,7 +29,7 @@ class Kind(Enum):
 
 
 class About(NamedTuple):
-    """What is said of a field."""
+    """The description of a field."""
 
     name: str
     kind: Kind

@@ -166,7 +166,7 @@ class ActuatorWalk {
     }
   }
 
-  /// Goes from `from` to `until`, which nobody sees: each channel by its own changes.
+  /// Goes from `from` to `until` unseen: each channel by its own changes.
   void approach(const Knot& from, const Knot& until) {
     approach(cursor_v_, speed_, from, until, std::array{Driven{v_, &BodyTwist::v}, Driven{vy_, &BodyTwist::vy}});
     approach(cursor_omega_, turn_, from, until, std::array{Driven{omega_, &BodyTwist::omega}});

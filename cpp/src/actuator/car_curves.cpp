@@ -101,7 +101,7 @@ class Drive {
   Pieces pieces_;
 };
 
-/// [s] after which a car has forgotten what it was told before.
+/// [s] after which a car has forgotten its earlier commands.
 double settling(const CarCurves& car) { return 10.0 * std::max(car.lag, car.steering_lag) + 1.0; }
 
 }  // namespace

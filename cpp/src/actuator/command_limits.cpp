@@ -19,7 +19,7 @@ namespace slipwise {
 namespace {
 
 constexpr int kMostPieces = 2000;     // of one ramp, however slow
-constexpr double kLongestRamp = 1e6;  // [s]; nobody waits longer
+constexpr double kLongestRamp = 1e6;  // [s]; no drive takes longer
 
 void check(const AxisLimits& limits, const char* axis) {
   const auto refuse = [&](const char* name, double value, const char* wanted) {

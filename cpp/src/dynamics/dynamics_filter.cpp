@@ -33,7 +33,7 @@ void check(const DynamicsSettings& settings, const Estimate& start) {
   need(start.mean.allFinite() && start.covariance.allFinite(), "a number of the start is not finite");
   need(!noise.measured.empty() &&
            std::ranges::all_of(noise.measured, [&](Eigen::Index place) { return place >= 0 && place < states; }),
-       "what is measured must be places in the state, one at least");
+       "measurements must be places in the state, one at least");
   need(noise.angle.size() == noise.measured.size() &&
            noise.measurement_std.size() == static_cast<Eigen::Index>(noise.measured.size()),
        "each measured component needs a standard deviation, and whether it is an angle");
@@ -79,7 +79,7 @@ Estimate DynamicsFilter::reported_parameters() const {
   return known;
 }
 
-/// From (state, parameters) at the last measurement: what is measured at `end`, then both there.
+/// From (state, parameters) at the last measurement: the measurements at `end`, then both there.
 WindowModel DynamicsFilter::window(const Eigen::VectorXd& start, double end) const {
   const Eigen::Index all = start.size();
   const Eigen::Index parameters = all - states_;
@@ -110,7 +110,7 @@ DynamicsUpdate DynamicsFilter::push_measurement(double t, const Eigen::VectorXd&
   need(t > t_, "measurements must be in the order of their stamps, each later than the last");
   need(t - t_ <= kLongest, "a measurement comes more than an hour after the last; begin with another filter");
   need(measured.size() == static_cast<Eigen::Index>(settings_.noise.measured.size()),
-       "a measurement has another size than what is measured");
+       "a measurement has another size than the measured places");
   need(!inputs_.empty(), "there is no input yet; push one that begins no later than the first measurement");
   const DynamicsUpdate update = learned(t, measured);
   inputs_.forget_before(t);
@@ -163,7 +163,7 @@ DynamicsUpdate DynamicsFilter::learned(double t, const Eigen::VectorXd& measured
 }
 
 /// Given the parameters, the state is known about a line: what a measurement says of the parameters is its derivative
-/// along that line, and what is left open of the state is noise to it.
+/// along that line, and the open part of the state is noise to it.
 void DynamicsFilter::add_score(const WindowModel& at, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& noise,
                                double t) {
   const Eigen::Index parameters = now_.mean.size() - states_;

@@ -92,7 +92,7 @@ void CausalFilter::forget(double fraction) {
   start_from_here();
 }
 
-/// What is known now is what the next segments are learned on, and fitted again on.
+/// The next segments are learned on the present estimate, and fitted again on it.
 void CausalFilter::start_from_here() {
   state_.scores.restart();
   stated_.setOnes();
@@ -163,7 +163,7 @@ void CausalFilter::keep(const InputHistory& inputs, const Segment& segment) {
 
 bool CausalFilter::refit_slice() { return refit_ && refit_->work.advance(kept_); }
 
-/// What is left of the refit is done; its prior may have followed the speeds meanwhile.
+/// The rest of the refit is done; its prior may have followed the speeds meanwhile.
 void CausalFilter::end_refit() {
   while (refit_slice()) {
   }

@@ -50,7 +50,7 @@ Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobi
   return (posterior + posterior.transpose()) / 2.0;
 }
 
-/// How far the segment's chart bends away from its linearisation over what is left open of the actuator: the covariance
+/// How far the segment's chart bends away from its linearisation over the open part of the actuator: the covariance
 /// of the second-order term along the actuator's principal directions (derivations/filter.md). The slip is
 /// linear enough.
 Eigen::Matrix3d second_order(const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
@@ -90,7 +90,7 @@ void check(const MotionModel& model, const Estimate& prior, const Segment& segme
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): what is known (model, prior), what was observed, and the settings.
+// NOLINTNEXTLINE(readability-function-size): knowledge (model, prior), observations, and the settings.
 IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
                        const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings) {
   check(model, prior, segment, noise);

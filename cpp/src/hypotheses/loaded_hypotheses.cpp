@@ -138,7 +138,7 @@ void MotionHypotheses::check_loaded(const MotionHypotheses& made) const {
   require(archive::same(settings_, made.settings_) && direct_bases_ == made.direct_bases_ &&
               direct_.has_value() == made.direct_.has_value() && cascaded_.has_value() == made.cascaded_.has_value() &&
               are_weights(weights_),
-          "what is learned is not what the settings say");
+          "the learned terms are not those of the settings");
   joint_.check_loaded(made.joint_);
   if (direct_) {
     direct_->check_loaded(present(made.direct_));

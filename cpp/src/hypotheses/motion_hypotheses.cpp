@@ -199,7 +199,7 @@ ModelAverage* MotionHypotheses::average_of(Structure structure) {
   return structure == Structure::Direct && direct_ ? &*direct_ : nullptr;
 }
 
-/// Predicts the segment by what is learned elsewhere, or not at all.
+/// Predicts the segment by the estimate from elsewhere, or not at all.
 ScoredSegment MotionHypotheses::predict(Structure structure) {
   const Estimate nothing{Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
   const ScoredSegment scored =

@@ -108,7 +108,7 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const Surface& own = surfaces_[place];
     const Surface& other = surfaces_[i];
-    // While driving, somebody says that they are two; names in two files are of nobody's comparison.
+    // While driving, a label says that they are two; names in two files were never compared.
     const bool named_apart = present_ && !numbered(own.name) && !numbered(other.name);
     if (i != place && !named_apart && known(own) && known(other) &&
         leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) <=
@@ -119,7 +119,7 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
   }
 }
 
-/// The older one keeps its name, unless only the newer one was named by somebody.
+/// The older one keeps its name, unless only the newer one has a name of its own.
 void SurfaceBank::merge(std::size_t older_place, std::size_t newer_place) {
   Surface& older = surfaces_[older_place];
   Surface& newer = surfaces_[newer_place];

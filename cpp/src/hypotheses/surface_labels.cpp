@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of surfaces, and what somebody's labels are worth.
+// Names of surfaces, and what labels are worth.
 #include <algorithm>
 #include <string>
 #include <string_view>

@@ -110,7 +110,7 @@ SurfaceMemory ModelAverage::new_surface(std::span<const SurfaceMemory> known, co
   return fresh;
 }
 
-/// Filters of one candidate as it begins, with their weights, and what is known by them.
+/// Filters of one candidate as it begins, with their weights and estimates.
 ModelAverage::Side ModelAverage::side_of(const SurfaceCandidate& candidate, std::span<const SurfaceMemory> known,
                                          std::size_t first) const {
   if (candidate.kind == SurfaceCandidate::Kind::Present) {

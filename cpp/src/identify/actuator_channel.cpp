@@ -156,7 +156,7 @@ void ActuatorChannel::learn_size(const Eigen::VectorXd& innovation, const Choles
   size_ = std::max(size_, kLeastSize);
 }
 
-/// As in iekf_update: how far the window bends away over what is left open of the parameters.
+/// As in iekf_update: how far the window bends away over the open part of the parameters.
 Eigen::MatrixXd ActuatorChannel::second_order(const Values& values, const WindowPoint& point) const {
   const Eigen::MatrixXd left = start_covariance(joint_, point.at);
   const SymmetricEigen open = symmetric_eigen(left.topLeftCorner(kChannelParameters, kChannelParameters));

@@ -199,7 +199,7 @@ struct CarCurveFilter::Means {
   Eigen::VectorXd drags = Eigen::VectorXd::Zero(std::ssize(kLags));
   Eigen::MatrixXd steering = Eigen::MatrixXd::Zero(kSteeringRamps, std::ssize(kSteeringLags));
   std::array<double, kGains.size()> distance{};
-  BodyTwist told{};  ///< throttle, and throttle times steering
+  BodyTwist commanded{};  ///< throttle, and throttle times steering
   double seconds = 0.0;
 };
 
@@ -254,8 +254,8 @@ void CarCurveFilter::step(const BodyTwist& command, double duration, const BodyT
     observers_[i] = advanced(curves_, observers_[i], command, duration);
     means.distance[i] += 0.5 * duration * (before + observers_[i].speed);
   }
-  means.told.v += duration * command.v;
-  means.told.omega += duration * command.v * command.omega;
+  means.commanded.v += duration * command.v;
+  means.commanded.omega += duration * command.v * command.omega;
   means.seconds += duration;
 }
 
@@ -302,8 +302,8 @@ void CarCurveFilter::learn(const Means& means, const BodyTwist& twist) {
     observer_score_[i] += huber_square(error / kSpeedNoise);
     observers_[i].speed += kGains[i] * error;
   }
-  gain_.learn(means.told.v / means.seconds, twist.v);
-  turn_gain_.learn(means.told.omega / means.seconds, twist.omega);
+  gain_.learn(means.commanded.v / means.seconds, twist.v);
+  turn_gain_.learn(means.commanded.omega / means.seconds, twist.omega);
   const CarState now{.speed = twist.v, .steering = observers_.front().steering};
   turn_rest_.learn(until_, twist.omega - car_twist(curves_, now).omega, kTurnNoise);
   sideways_.learn(until_, twist.vy, kSpeedNoise);

@@ -76,7 +76,7 @@ class Search {
   }
 
   /// Limits that act together may each explain too little to be added alone. So all saturations and rates of the
-  /// commands are tried at once, and kept where they, or what is left of them, explain more than what was found one by
+  /// commands are tried at once, and kept where they, or the rest of them, explain more than what was found one by
   /// one.
   ScoredActuator or_all_at_once(const ScoredActuator& one_by_one, const LimitedActuator& plain) {
     const ScoredActuator all = refined(with_all(plain), kLongRefinement, one_by_one.loss.total - least_gain_);
@@ -157,7 +157,7 @@ class Search {
     return fit_.refine(bands_.between_commands(drive), iterations, wanted);
   }
 
-  /// The best limit, or pair of rates, to add; nothing where none gains enough.
+  /// The best limit, or pair of rates, to add; empty if none gains enough.
   std::optional<ScoredActuator> with_one_more(const ScoredActuator& now) const {
     std::vector<ScoredActuator> trials;
     for (const LimitedAxis axis : kLimitedAxes) {
@@ -384,7 +384,7 @@ LimitSearch find_limits(std::span<const WheelRecord> records, const PriorSetting
         commands.empty() ? AxisReach{} : AxisReach{commands.front().speed, commands.back().speed, range.step};
   }
   CommandLimits& limits = result.drive.limits;
-  if (!limits_sides(limits)) {  // the actuator says the gain, and nobody needs the wheel_separation
+  if (!limits_sides(limits)) {  // the actuator says the gain, and the wheel_separation is not needed
     limits.wheel_separation = wheel_separation;
     result.drive.actuator.gain_v = std::exchange(limits.gain_v, 1.0);
     result.drive.actuator.gain_omega = std::exchange(limits.gain_omega, 1.0);

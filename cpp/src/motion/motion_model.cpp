@@ -23,7 +23,7 @@ ParameterInfo slip_info(const Basis& basis, std::size_t i) {
           "fraction of " + basis.terms()[i].text() + " in the " + std::string(kSlipRateWords[c]) + " slip rate"};
 }
 
-/// One of the actuator's parameters: where it stands, and whether its logarithm is what is learned.
+/// One of the actuator's parameters: where it stands, and whether its logarithm is learned.
 struct ActuatorParameter {
   double ActuatorModel::* value;
   bool logarithm;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments of a stream that somebody asks for: those that are complete now, and those ahead.
+// Segments of a stream that a caller asks for: those that are complete now, and those ahead.
 #include <algorithm>
 #include <optional>
 #include <utility>

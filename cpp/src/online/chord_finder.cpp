@@ -13,7 +13,7 @@
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kChordTime, 1.0);       // [s] at the fastest the robot was told to go so far make a chord,
+SLIPWISE_TUNING(kChordTime, 1.0);       // [s] at the fastest commanded speed so far make a chord,
 SLIPWISE_TUNING(kShortest, 0.25);       // [m] which is no shorter
 SLIPWISE_TUNING(kLongest, 1.0);         // [m] and no longer,
 SLIPWISE_TUNING(kLengthOfNoise, 20.0);  // unless it would not be this many of the standard deviations that are stated

@@ -21,7 +21,7 @@ constexpr double kTwistTime = 0.1;  // [s] and over which its white noise is ave
 constexpr double kUnknownSpeed = 1.0;  // [m/s, rad/s] of a robot of which no input is known,
 constexpr double kLongUnknown = 1.0;   // [s] for which it may go on as it did
 constexpr double kLearned = 20.0;      // [s] of segments, before which the model is not held against the robot
-constexpr double kTold = 0.5;  // [s] before a stretch from which on inputs must be known to tell whether it was driven
+constexpr double kCommanded = 0.5;     // [s] before a stretch, from which on its inputs must be known
 
 /// Variance of a Student t over that of the normal with its scale.
 double spread(const StudentT& student) { return student.inflation * student.dof / std::max(student.dof - 2.0, 1.0); }
@@ -98,8 +98,8 @@ MotionState MotionLearner::motion_monitor() {
   const double inputs_until = inputs.empty() ? -std::numeric_limits<double>::infinity() : inputs.newest();
   const double known_until = std::max(inputs_until, stream_.newest() - settings_.stream.latency);
   const auto leg_of = [this](const LegKnowledge& known, double start, double end) -> std::optional<MotionLeg> {
-    const bool told = !stream_.inputs().unknown_since(start - kTold, end);
-    return told && seconds_ >= kLearned ? std::optional(leg(known, start, end)) : std::nullopt;
+    const bool commanded = !stream_.inputs().unknown_since(start - kCommanded, end);
+    return commanded && seconds_ >= kLearned ? std::optional(leg(known, start, end)) : std::nullopt;
   };
   const auto asked = [&inputs](double start, double end) {
     const InputBuffer::Driven driven = inputs.driven(start, end);

@@ -11,7 +11,7 @@
 
 namespace slipwise {
 
-/// By what is known now of the slip: where the baseline predicts best, by the best model that has some.
+/// By the present estimate of the slip: where the baseline predicts best, by the best model that has some.
 void MotionLearner::learn_source() {
   auto item = std::get<SourceSegment>(std::move(waiting_.front()));
   waiting_.pop_front();

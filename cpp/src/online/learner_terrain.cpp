@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a learner does about terrain when it is told: it forgets a part, begins a drive, or recalls a surface.
+// What a learner does about terrain on a call: it forgets a part, begins a drive, or recalls a surface.
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -11,7 +11,7 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kMostEvents = 1000;  // that wait for somebody to ask
+constexpr std::size_t kMostEvents = 1000;  // that wait for a call
 
 }  // namespace
 

@@ -91,7 +91,7 @@ void LoadedValues::check(Type<Segment> /*type*/, const Segment& value) {
   require(possible(value.measured.vector()) && possible(value.sensor.vector()) && possible(value.heading) &&
               (!value.initial || possible(*value.initial)) && possible(value.gx) && possible(value.gy),
           "a segment is not finite");
-  require(!value.known || (value.known->twist && is_near(value.known->until)), "what is known of a drive is not there");
+  require(!value.known || (value.known->twist && is_near(value.known->until)), "the known state of a drive is missing");
   require(!value.chords || (is_near((*value.chords)[0].from) && is_near((*value.chords)[1].from)),
           "a chord begins far from its segment");
 }

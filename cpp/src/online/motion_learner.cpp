@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments are learned piece by piece while measurements arrive; what is known is published at stamps, not at times.
+// Segments are learned piece by piece while measurements arrive; estimates are published at stamps, not at times.
 #include "slipwise/online/motion_learner.hpp"
 
 #include <algorithm>

@@ -20,16 +20,15 @@ constexpr double kMovesFraction = 0.5;    // and by more it moves
 constexpr double kMisfit = 0.1;           // of the expected motion that a learned model may be off for a moment
 constexpr double kVisible = 25.0;         // normalised square of the expected motion from which on its lack would show
 constexpr double kOdds = 4.0;             // logarithm of the odds at which a window says that the robot is stuck
-constexpr double kStillAsked =
-    0.5;                           // of the window's mean input, below which the robot may have stopped as it was told
-constexpr double kLateStep = 0.1;  // [s] in such steps it is tried whether the body or its poses are late,
-constexpr int kLateSteps = 8;      // by so many of them at most
-constexpr double kLately = 0.1;    // [s] of the last inputs
-constexpr double kDof = 8.0;       // of the Student t by which explanations are weighed
+constexpr double kStillAsked = 0.5;  // of the window's mean input, below which the robot may have stopped as commanded
+constexpr double kLateStep = 0.1;    // [s] in such steps it is tried whether the body or its poses are late,
+constexpr int kLateSteps = 8;        // by so many of them at most
+constexpr double kLately = 0.1;      // [s] of the last inputs
+constexpr double kDof = 8.0;         // of the Student t by which explanations are weighed
 constexpr double kExplained = 25.0;  // normalised square beyond which being stuck does not explain a window either
 constexpr double kConfirmed = 0.2;   // [s] for which windows must say so
-constexpr double kForgotten = 2.0;   // [s] without expected motion, after which nobody knows
-constexpr double kUnasked = 3.0;     // [s] of poses that are kept for somebody who asks
+constexpr double kForgotten = 2.0;   // [s] without expected motion, after which its state is unknown
+constexpr double kUnasked = 3.0;     // [s] of poses that are kept for a call
 
 double log_student(double square, const Eigen::Matrix3d& scale) {
   return -0.5 * std::log(scale.determinant()) - 0.5 * (kDof + 3.0) * std::log1p(square / kDof);
@@ -195,7 +194,7 @@ MotionState MotionMonitor::at(double t, double known_until, const Model& model) 
     waiting_.pop_front();
     take(pose, model);
   }
-  if (!window_.empty() && later(t, window_.back().t + kForgotten)) {  // no poses: nobody knows
+  if (!window_.empty() && later(t, window_.back().t + kForgotten)) {  // no poses: unknown
     state_ = {};
     suspected_.reset();
     before_.reset();

@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kLongestLeg = 0.5;  // [s] so that a prediction need not begin at the last pose, however old that is
 constexpr double kMostLegs = 60.0;   // [s] before which one leg is as good as many
-constexpr double kLost = 3600.0;     // [s] without a pose, after which nobody knows where the robot is
-constexpr double kUnasked = 10.0;    // [s] of poses that are kept for somebody who asks
+constexpr double kLost = 3600.0;     // [s] without a pose, after which the robot's place is unknown
+constexpr double kUnasked = 10.0;    // [s] of poses that are kept for a call
 constexpr double kGate = 25.0;       // normalised square beyond which a pose is rejected: one in 10^5
 constexpr int kAgree = 3;            // poses that agree with a rejected one until it is followed
-constexpr double kCreep = 1e-6;      // [m^2/s, rad^2/s] a robot may be moved by what nobody measures
+constexpr double kCreep = 1e-6;      // [m^2/s, rad^2/s] a robot may be moved by unmeasured motion
 
 constexpr double kUnmodelled = 1e-3;    // [m^2/s, rad^2/s] per misfit, of motion that the inputs say nothing of
 constexpr double kFreedom = 3.0;        // mean of a normalised square that is as it should be
@@ -80,7 +80,7 @@ void PoseFilter::push(const MeasuredPose& pose) {
   while (!moments_.empty() && moments_.back().main.t >= pose.t) {
     moments_.pop_back();
   }
-  if (pose.t - asked_ > kUnasked) {  // nobody asks: the filter begins again once somebody does
+  if (pose.t - asked_ > kUnasked) {  // no call: the filter begins again at the next one
     moments_.clear();
     while (poses_.front().pose.t < pose.t - kUnasked) {
       poses_.pop_front();

@@ -10,7 +10,7 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kKept = 8;  // of several horizons, of the prediction to come, and of what is learned next
+constexpr std::size_t kKept = 8;  // of several horizons, of the prediction to come, and of the next segment to learn
 
 }  // namespace
 

@@ -27,7 +27,7 @@ double median_of(std::vector<double> values) {
 }
 
 /// The second position, headed by another chord where its own begins at the first: the turn between such a pair says
-/// nothing that their distance does not. Nothing where it has no other.
+/// nothing that their distance does not. Empty if it has no other.
 std::optional<MeasuredPose> headed_apart(const MeasuredPose& first, MeasuredPose second) {
   auto& [used, other] = second.headings;
   if (!used || used->chord.from != first.t) {

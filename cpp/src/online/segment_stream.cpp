@@ -243,7 +243,7 @@ void SegmentStream::process_pose(const MeasuredPose& raw) {
   }
 }
 
-/// With what is known beside it: how the robot was tilted, and how exact its like were.
+/// With its context: how the robot was tilted, and how exact its like were.
 MeasuredPose SegmentStream::complete(const MeasuredPose& raw, PoseAccuracies& accuracies) const {
   MeasuredPose pose = raw;
   if (const auto tilt = tilts_.known_at(raw.t, settings_.unknown_after)) {

@@ -19,7 +19,7 @@ HeldCommand command(double v, double v_by_length, double fraction, const Manoeuv
   return held;
 }
 
-constexpr double kLongestRamp = 100.0;  // [s]; nobody waits longer at a goal
+constexpr double kLongestRamp = 100.0;  // [s]; no robot waits longer at a goal
 
 bool holds(const AxisLimits& limits, double command) {
   return std::abs(command) < limits.dead_band || std::abs(command) > limits.saturation;

@@ -252,7 +252,7 @@ PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Ei
   alpha_ = parameters.head(model.slip_size());
   actuator_ = model.actuator(parameters);
   actuator_.clock_offset = 0.0;
-  actuator_.delay_v = std::max(actuator_.delay_v, 0.0);  // what is learned as less is an offset of clocks too
+  actuator_.delay_v = std::max(actuator_.delay_v, 0.0);  // a learned value below it is an offset of clocks too
   actuator_.delay_omega = std::max(actuator_.delay_omega, 0.0);
 }
 

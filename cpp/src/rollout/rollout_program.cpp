@@ -64,7 +64,7 @@ std::vector<LaneProduct> lane_products(const SlipProgram& program, const std::ve
   return products;
 }
 
-/// With the coefficients and gains of the two lags. What is left of a lag is rounded first, so that it settles on its
+/// With the coefficients and gains of the two lags. The rest of a lag is rounded first, so that it settles on its
 /// input.
 template <typename Scalar>
 LaneLag<Scalar> lane_lag(const ChannelFraction& part, const AxisResponse& response) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Terms of a force, told from those of slip by their spelling.
+// Terms of a force, distinguished from those of slip by their spelling.
 #include "slipwise/slip/force_terms.hpp"
 
 #include <algorithm>

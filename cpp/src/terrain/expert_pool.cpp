@@ -9,7 +9,7 @@
 namespace slipwise {
 namespace {
 
-constexpr double kLeast = 0.01;     // of an expert's probability: nobody may rule a surface out alone
+constexpr double kLeast = 0.01;     // of an expert's probability: no expert may rule a surface out alone
 constexpr double kCertain = 1e-6;   // probabilities beyond this have no log odds of their own
 constexpr double kFarthest = 50.0;  // log odds
 

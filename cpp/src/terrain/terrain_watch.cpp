@@ -14,7 +14,7 @@ namespace {
 constexpr double kLongestWait = 0.5;        // [s] for a stream that is behind another
 constexpr double kLongestSilence = 60.0;    // [s] without samples; windows begin again after it
 constexpr double kSameRate = 1.25;          // rates that differ by less are one
-constexpr std::size_t kMostAnswers = 1000;  // that wait for somebody to ask
+constexpr std::size_t kMostAnswers = 1000;  // that wait for a call
 
 /// Whether samples come as often as in training.
 template <class Samples>

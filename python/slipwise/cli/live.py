@@ -74,7 +74,7 @@ def live(
     ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
 ) -> int:
-    """Learn while the robot drives, and publish what is learned.
+    """Learn while the robot drives, and publish the learned model.
 
     Reads commands, wheel speeds and poses; publishes odometry with learned slip, the path ahead, the model
     and its validity below the node's name. Ctrl-C or SIGTERM ends it and writes the cache. Settings: [live],

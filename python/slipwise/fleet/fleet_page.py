@@ -99,7 +99,7 @@ def _charts(figures: Sequence[str]) -> str:
 
 
 def _difference(found: ParameterFindings) -> float:
-    """Return how much vehicles differ in a parameter, in standard deviations of what is known of each."""
+    """Return how much vehicles differ in a parameter, in standard deviations of each vehicle's estimate."""
     return float(np.std(found.estimate) / max(float(np.median(found.std)), 1e-12))
 
 

@@ -40,7 +40,7 @@ def write_prior(
         for each in findings
         if each.prior is not None
     }
-    head = "# What is known of a robot of this fleet before its first log; units as in model files.\n"
+    head = "# The prior of a robot of this fleet before its first log; units as in model files.\n"
     content = FleetPriorFile(
         slipwise_fleet_prior=PRIOR_SCHEMA,
         type=vehicle_type,

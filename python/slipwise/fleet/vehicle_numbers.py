@@ -93,14 +93,14 @@ def types_apart(columns: Mapping[str, NDArray[Any]]) -> str:
     best: tuple[float, str] = (0.0, "")
     for name in ("turns", "drives", "multiplier"):
         middle = {vehicle: median(columns, name, rows) for vehicle, rows in logs.items()}
-        told = sorted((value, vehicle) for vehicle, value in middle.items() if value > 0.0)
-        if len(told) < 2:
+        ordered = sorted((value, vehicle) for vehicle, value in middle.items() if value > 0.0)
+        if len(ordered) < 2:
             continue
-        steps = np.diff(np.log([value for value, _ in told]))
+        steps = np.diff(np.log([value for value, _ in ordered]))
         cut = int(np.argmax(steps))
         inside = max([0.0, *np.delete(steps, cut).tolist(), *_scatter(columns, name, logs)])
         if steps[cut] >= np.log(APART) and steps[cut] >= CLEARLY * inside and steps[cut] > best[0]:
-            best = float(steps[cut]), _warning(WORDS[name], told[: cut + 1], told[cut + 1 :])
+            best = float(steps[cut]), _warning(WORDS[name], ordered[: cut + 1], ordered[cut + 1 :])
     return best[1]
 
 

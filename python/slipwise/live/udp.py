@@ -68,7 +68,7 @@ class Udp:
         line = line_of(output)
         if self._sender is None or len(line) > LARGEST:
             return
-        with contextlib.suppress(OSError):  # nobody there
+        with contextlib.suppress(OSError):  # no receiver
             self._socket.sendto(line.encode() + b"\n", self._sender)
 
     def notices(self) -> list[str]:

@@ -38,7 +38,7 @@ struct MeasuredActuator {
   bool any_inputs = false;  ///< any inputs may follow, not only those that the drive was given: none overspeeds it
 };
 
-/// A stretch of time, in pose stamps, and what is known of the drive at its start.
+/// A stretch of time, in pose stamps, and the drive's state at its start.
 struct ActuatorSpan {
   double start;                                ///< [s]
   double end;                                  ///< [s]; inputs later than this are not used
@@ -63,7 +63,7 @@ struct ActuatorSteps {
 };
 
 /// The drive over [start - clock_offset, end - clock_offset] of the inputs, split wherever a delayed input changes.
-/// What is known of it was measured; after that the actuator goes on from `initial`.
+/// Its known state was measured; after that the actuator goes on from `initial`.
 ActuatorSteps actuator_steps(const InputHistory& inputs, const ActuatorModel& actuator, const ActuatorSpan& window);
 /// The same with exact sensitivities to the actuator's parameters.
 ActuatorSteps linearize_actuator_steps(const InputHistory& inputs, const ActuatorModel& actuator,

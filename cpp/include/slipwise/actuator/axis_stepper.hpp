@@ -140,7 +140,7 @@ class AxisStepper {
                : fast;
   }
 
-  /// Goes on for a while whose integral nobody asks for.
+  /// Goes on for a while without its integral.
   void follow(const AxisDecay& decay, const Row& duration_derivative) {
     if (!moves_) {
       return;

@@ -54,7 +54,7 @@ struct KnownMotion {
   double sideways_lag = 0.0;  ///< [s]
 };
 
-/// From when to when the twists of a car are wanted, and what is known of it at first.
+/// From when to when the twists of a car are wanted, and its state at first.
 struct CarSpan {
   double start;                              ///< [s]
   double end;                                ///< [s]

@@ -137,7 +137,7 @@ class CommandLimiter {
   AxisRamp speed_, yaw_rate_, left_, right_;
 };
 
-/// What is left of a command that is held for long.
+/// The part of a command that remains if it is held for long.
 /// \throws std::invalid_argument as `check` does.
 BodyTwist settled(const CommandLimits& limits, const BodyTwist& command);
 

@@ -72,7 +72,7 @@ inline LagStepLinearization linearize_lag_step(double output, double input, doub
   return linearize_lag_step(output, input, LagDecay(time_constant, duration));
 }
 
-/// The output alone, where nobody asks for the way.
+/// The output alone, without the way.
 inline double lag_output(double output, double input, double time_constant, double duration) {
   return time_constant > 0.0 ? input + (output - input) * std::exp(-duration / time_constant) : input;
 }

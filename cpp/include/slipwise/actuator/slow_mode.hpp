@@ -18,7 +18,7 @@ struct MeasuredChannel {
   T bound;     ///< what the slow mode may hold beside the two above
 };
 
-/// The slow mode holds what is left, within the range of the other three.
+/// The slow mode holds the rest, within the range of the other three.
 ///
 /// With the measured speed less what the fast mode settles at as the bound, a constant input carries the speed from the
 /// measured one to its own, and not beyond. With the slow mode's fraction of the measured speed, any inputs do so: each

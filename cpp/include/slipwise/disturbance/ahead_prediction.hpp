@@ -13,7 +13,7 @@ SegmentLinearization linearize_ahead(const MotionModel& model, const Eigen::Ref<
                                      const DrivenSegment& driven, const SlipAhead& ahead);
 
 /// Predicts `driven`, as `DisturbanceFilter::predict`, where slip is that of the surfaces ahead: of the posterior, only
-/// what is known of the robot counts.
+/// the estimate of the robot counts.
 /// \throws std::invalid_argument when the slip ahead has other terms than the posterior, or as `predict`.
 ExpectedPose predict_ahead(const DisturbanceFilter& filter, MotionPosterior posterior, const SlipNow& now,
                            const DrivenSegment& driven, const MixedAhead& mixed);

@@ -18,7 +18,7 @@
 
 namespace slipwise {
 
-/// What is measured of a state, and what disturbs it.
+/// The measured part of a state, and its disturbance.
 struct DynamicsNoise {
   std::vector<Eigen::Index> measured;  ///< [M] places in the state
   std::vector<bool> angle;             ///< [M] whether a measured component is an angle [rad]

@@ -32,7 +32,7 @@ class BodyForce {
   const std::vector<Eigen::Index>& places() const { return places_; }
   /// Standard deviations of slip, those of the force put to their own.
   Eigen::VectorXd prior_std(Eigen::VectorXd slip_std) const;
-  /// What is known after `seconds` in which nothing was measured; where they are negative, another run has begun, and
+  /// The estimate after `seconds` without a measurement; where they are negative, another run has begun, and
   /// nothing is known of the force.
   void pass(Estimate& estimate, double seconds) const;
 

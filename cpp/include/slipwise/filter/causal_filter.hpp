@@ -40,7 +40,7 @@ class CausalFilter {
   /// the robot's, not the terrain's: they stay as learned.
   void forget(double fraction);
 
-  /// What is known of the surface that is driven on, apart from the robot.
+  /// The estimate of the surface that is driven on, apart from the robot.
   SurfaceSlip surface() const;
   /// Goes on with the slip of a surface; what is the robot's stays as learned. `drift` of its prior variance is added:
   /// no surface is quite as it was.

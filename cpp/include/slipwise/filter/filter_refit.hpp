@@ -17,7 +17,7 @@
 namespace slipwise {
 
 /// The first segments were learned with a first guess of the noise, and linearised where little was known. A refit
-/// weights them by what is known once there are more, fits all at once, then learns those that came meanwhile. Where
+/// weights them by the estimate once there are more, fits all at once, then learns those that came meanwhile. Where
 /// the fit does not converge, what was learned one by one stands.
 class FilterRefit {
  public:
@@ -29,7 +29,7 @@ class FilterRefit {
   /// Does a slice of the work on `segments`: the first that were kept, and those since. Whether there is more to do
   /// now.
   bool advance(std::span<const DrivenSegment> segments);
-  /// What is known now; nothing where the fit failed.
+  /// The present estimate; empty if the fit failed.
   std::optional<FilterState> result() &&;
 
   /// \throws std::invalid_argument where a loaded one does not fit the model, or the segments that are kept.
@@ -52,7 +52,7 @@ class FilterRefit {
 
   MotionModel model_;
   Estimate before_;
-  FilterState state_;  ///< at first, by which segments are weighted; then what is learned
+  FilterState state_;  ///< at first, by which segments are weighted; then the result
   NoiseSettings noise_;
   IekfSettings iekf_;
   std::size_t count_ = 0;

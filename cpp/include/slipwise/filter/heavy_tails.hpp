@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the residuals of real segments are taken for: a Student-t, whose tails are heavier than a normal's.
+// The model of the residuals of real segments: a Student-t, whose tails are heavier than a normal's.
 #pragma once
 
 #include "slipwise/linear/tuning.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of a motion model at one time: its parameters, how sure they are, and the noise around it.
+// The posterior of a motion model at one time: its parameters, how sure they are, and the noise around it.
 #pragma once
 
 #include <Eigen/Core>

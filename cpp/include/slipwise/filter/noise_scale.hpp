@@ -34,7 +34,7 @@ class NoiseScale {
   /// Learned factor of the noise variances of (x, y, theta).
   const Eigen::Vector3d& value() const { return value_; }
   /// One step of expectation-maximisation: the residual after the update plus what the parameters leave open.
-  /// `expected` are the variances of the shape. Does nothing where the settings say that the noise is known.
+  /// `expected` are the variances of the shape. Does nothing if the settings fix the noise.
   /// `at` is the segment at the estimate whose covariance is given.
   void learn(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Pose2& measured,
              const Eigen::Vector3d& expected);

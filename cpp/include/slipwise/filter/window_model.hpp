@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stretch of a process observed from its start: what is measured on the way and where it ends, with common noise
+// A stretch of a process observed from its start: measurements on the way and its end, with common noise
 // (derivations/filter.md).
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace slipwise {
 
-/// Linearised at a state at the start. The first rows are what is measured, those after them the state at the end.
+/// Linearised at a state at the start. The first rows are the measurements, those after them the state at the end.
 struct WindowModel {
   Eigen::Index measured;       ///< M
   Eigen::VectorXd value;       ///< [M + N]
@@ -32,7 +32,7 @@ struct WindowPoint {
   WindowModel at;
 };
 
-/// S = H P H^T + R of what is measured.
+/// S = H P H^T + R of the measurements.
 Eigen::MatrixXd innovation_covariance(const Estimate& prior, const WindowModel& at);
 
 /// The most probable state at the start, given the prior and what was measured: from `expected`, the model of the

@@ -43,7 +43,7 @@ class CascadedModel {
   const MotionModel& actuator_model() const { return actuator_.model(); }
   /// Predicts a segment of the commands by what was known when `refresh` was called last.
   ScoredSegment predict(const DrivenSegment& segment);
-  /// Joins what is known of slip and actuator.
+  /// Joins the estimates of slip and actuator.
   void refresh();
   /// What was joined last.
   const std::shared_ptr<const MotionPosterior>& posterior() const { return posterior_; }

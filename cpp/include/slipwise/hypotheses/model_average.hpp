@@ -49,7 +49,7 @@ class ModelAverage {
   /// that weighted most before.
   IekfUpdate learn(const InputHistory& inputs, const Segment& segment);
 
-  /// The same in pieces: takes the segment, which `advance` then learns. What is left of the one before is learned now.
+  /// The same in pieces: takes the segment, which `advance` then learns. The rest of the one before is learned now.
   void start(const InputHistory& inputs, const Segment& segment);
 
   /// One bounded piece: the test for a change, or the update of one filter. False when the segment is learned.
@@ -65,24 +65,24 @@ class ModelAverage {
   /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
   void forget(double fraction);
 
-  /// What is known of the surface that is driven on: of the likeliest, where that is open.
+  /// The estimate of the surface that is driven on, or of the likeliest.
   SurfaceMemory remember() const;
   /// Surfaces compete to be the one that is driven on, `candidates` with their probabilities, [0] the one before or one
   /// of `known`; those but the present one learn the segments from `since` [s] on, which speak first. Predictions are
   /// the mixture until one is taken. What was known of the present surface before `since` is kept as `parting`.
   void open_trial(const std::vector<SurfaceCandidate>& candidates, std::span<const SurfaceMemory> known,
                   const DisturbanceModel& law, double since);
-  /// Somebody says which candidates are likelier: log factors of their odds, which count from now on.
+  /// Weights the candidates from outside: log factors of their odds, which count from now on.
   void weigh_trial(const Eigen::VectorXd& log_factors);
-  /// What competes now; nothing where one surface is driven on.
+  /// What competes now; empty if one surface is driven on.
   const std::optional<SurfaceTrial>& trial() const { return trial_; }
   /// Takes one of the candidates: learning goes on from its posterior.
   void settle(std::size_t candidate);
-  /// What was known of the surface before the last trial, its doubtful last segments left out.
+  /// The estimate of the surface before the last trial, without its suspicious last segments.
   const std::optional<SurfaceMemory>& parting() const { return parting_; }
   /// Of a suspicion, what was known before the segments that raised it.
   void mark_parting(double since);
-  /// Whether a suspicion is only said, for somebody who knows other surfaces to open a trial.
+  /// Whether a suspicion is only reported; the owner of other surfaces opens the trial.
   void hand_over(bool suspicions) { handed_over_ = suspicions; }
   /// Start of the segments that the last suspicion is about [s].
   double suspected_since() const { return suspected_since_; }
@@ -92,9 +92,9 @@ class ModelAverage {
   void start_run() { recent_.clear(); }
   /// Log odds that a trial would give one of two surfaces against the other, were it the one and driven as of late.
   double apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const;
-  /// What is known where a surface is driven on.
+  /// The estimate while a surface is driven on.
   AverageState state_on(const SurfaceMemory& surface) const;
-  /// The memory of all bases from one of some: of the others, what is known now is remembered. `same_robot` says
+  /// The memory of all bases from one of some: of the others, the present estimate is remembered. `same_robot` says
   /// whether it goes with the parameters of this robot, as this average has them.
   /// \throws std::invalid_argument when a basis has another number of terms there.
   SurfaceMemory completed(const NamedMemory& some, bool same_robot) const;

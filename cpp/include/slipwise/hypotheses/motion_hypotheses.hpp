@@ -24,7 +24,7 @@ namespace slipwise {
 /// Those that ship and are averaged: the kinematic baseline first, then more and more terms.
 std::vector<Basis> averaged_bases();
 
-/// What is learned.
+/// What the learner learns.
 struct HypothesisSettings {
   std::vector<Basis> bases = averaged_bases();  ///< averaged, or one
   bool dynamics = true;                         ///< inputs are commands: lag and delay are learned
@@ -91,21 +91,21 @@ class MotionHypotheses {
   void forget(double fraction);
   /// Another drive begins: on a surface that is remembered, or a new one. `law` is the slip disturbance as it is known.
   void start_drive(const DisturbanceModel& law, const DriveStart& start);
-  /// Somebody says that the surface changes now, to the one of this name if any.
+  /// The surface changes now by a label, to the one of this name if any.
   void cue_surface(const DisturbanceModel& law, const std::string& label);
   /// A sensor says what the terrain under the robot is.
   void hear_terrain(const DisturbanceModel& law, const TerrainAnswer& answer);
   /// Segments of one run are not joined with those of another.
   void start_run();
-  /// After a segment: surfaces are suspected, and taken. Whether what is known changed.
+  /// After a segment: surfaces are suspected, and taken. Whether the estimate changed.
   bool consider_surfaces(const DisturbanceModel& law);
   /// The surfaces as they are known now, the present one included, and which one that is.
   SurfaceBank surfaces_now(const DisturbanceModel& law) const;
   const SurfaceBank& bank() const { return bank_; }
   std::vector<SurfaceEvent> take_surface_events() { return bank_.take_events(); }
-  /// How probable each surface is to be the one under the robot; nothing where none is remembered.
+  /// How probable each surface is to be the one under the robot; empty if none is remembered.
   std::vector<SurfaceProbability> probable_surfaces() const;
-  /// What is known of a surface in the terms of a structure; nothing where it has no memory.
+  /// The estimate of a surface in the terms of a structure; empty if it has no memory.
   std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const;
   /// The same of the surface that is driven on, whether surfaces are remembered or not.
   std::optional<SlipOnSurface> slip_now(Structure structure) const;
@@ -120,7 +120,7 @@ class MotionHypotheses {
   std::shared_ptr<const MotionPosterior> posterior() const;
   /// The same among structures with slip, which the baseline has not.
   std::shared_ptr<const MotionPosterior> slip_posterior() const;
-  /// What one structure knows; nothing where it is not tried.
+  /// What one structure knows; empty if it is not tried.
   std::shared_ptr<const MotionPosterior> of(Structure structure) const;
   /// Weight of each structure; 0 where it is not tried.
   const std::array<double, kStructures>& weights() const { return weights_; }

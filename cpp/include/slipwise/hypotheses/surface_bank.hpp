@@ -15,7 +15,7 @@
 
 namespace slipwise {
 
-/// The averages of one learner, each of which remembers every surface in its own terms; nothing where one is not tried.
+/// The averages of one learner, each of which remembers every surface in its own terms; empty where one is not tried.
 inline constexpr std::size_t kAverages = 3;
 inline constexpr std::size_t kJoint = 0, kDirect = 1, kCascaded = 2;  ///< which is whose
 using Averages = std::array<ModelAverage*, kAverages>;
@@ -32,9 +32,9 @@ struct Surface {
   ClassCounts classes = {};  ///< of terrain that sensors named on it, in visits
 };
 
-/// What is said of a drive's start.
+/// Facts about a drive's start.
 struct DriveStart {
-  std::string label = {};  ///< name of the surface, where somebody thinks to know it
+  std::string label = {};  ///< name of the surface, if a label gives it
   std::string date = {};
 };
 
@@ -64,7 +64,7 @@ class SurfaceBank {
 
   /// A drive begins somewhere: any known surface, or a new one.
   void start_drive(const Averages& averages, const DisturbanceModel& law, const DriveStart& start);
-  /// Somebody says that the surface is `label`, or another from now on where that is empty.
+  /// A label says that the surface is `label`, or another from now on where that is empty.
   void cue(const Averages& averages, const DisturbanceModel& law, const std::string& label);
   /// A sensor says what the terrain under the robot is. In a trial all that it said counts as one cue, since answers
   /// miss alike; where another surface explains it far better than the present one, a trial begins.
@@ -78,7 +78,7 @@ class SurfaceBank {
   /// The surface that is driven on is remembered as it is now.
   void keep_present(const Averages& averages, const DisturbanceModel& law);
   const std::vector<Surface>& surfaces() const { return surfaces_; }
-  /// The one that is driven on; nothing where that is open, or it has no entry yet.
+  /// The one that is driven on; empty if that is open, or it has no entry yet.
   std::optional<std::size_t> present() const { return present_; }
   /// What happened since the last call.
   std::vector<SurfaceEvent> take_events();
@@ -87,7 +87,7 @@ class SurfaceBank {
   const LabelCounts& labels() const { return labels_; }
   /// Begins with surfaces that were learned before.
   void know(std::vector<Surface> surfaces, const LabelCounts& labels);
-  /// Takes in surfaces of another memory of the same robot. One that cannot be told apart from one that is known
+  /// Takes in surfaces of another memory of the same robot. One that cannot be distinguished from a known one
   /// becomes one with it; one whose name is taken gets a number. Returns their names here.
   std::vector<std::string> add(const Averages& averages, const DisturbanceModel& law, std::vector<Surface> others,
                                std::size_t leader);
@@ -128,7 +128,7 @@ class SurfaceBank {
   void drop(std::size_t place);
   void drop_least_used(std::size_t most);
   bool taken(const std::string& name) const;
-  static bool numbered(const std::string& name);  // whether nobody named it
+  static bool numbered(const std::string& name);  // whether it has no name of its own
   std::string new_name();
 
   SurfaceSettings settings_;

@@ -33,7 +33,7 @@ void add_counts(const ClassCounts& more, ClassCounts& counts);
 /// How much of all each is; there is some.
 ClassCounts shares_of(ClassCounts counts);
 
-/// The probability of each class, and of "unknown", where each of them is as likely as the others beforehand.
+/// The probability of each class, and of "unknown", where the prior odds are even.
 ClassCounts even_odds(const TerrainAnswer& answer);
 
 /// P(what was said | surface), but for a constant, for classes that were `said` as often: a Dirichlet posterior over

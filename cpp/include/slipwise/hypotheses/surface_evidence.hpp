@@ -14,7 +14,7 @@
 
 namespace slipwise {
 
-/// What is known of a surface before the segments that are judged.
+/// The estimate of a surface before the segments that are judged.
 struct SurfacePosterior {
   Estimate estimate;
   Eigen::VectorXd prior_std;    ///< [parameters]
@@ -45,7 +45,7 @@ class SurfaceEvidence {
   }
 
  private:
-  /// What is known under one candidate of the disturbance.
+  /// The estimate under one candidate of the disturbance.
   struct Under {
     double log_weight;           ///< its weight so far, and how likely the segments were
     double time_constant;        ///< [s]

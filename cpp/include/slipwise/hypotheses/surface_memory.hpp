@@ -23,7 +23,7 @@ struct SurfaceSettings {
   int fewest = 20;             ///< segments of a surface that is kept, or compared with others
   double changed = 0.2;        ///< prior probability that a suspicion is another surface, not a passing disturbance [-]
   double unknown = 0.2;        ///< prior probability that the surface of a drive's start was never driven [-]
-  bool merge = true;           ///< surfaces that cannot be told apart become one:
+  bool merge = true;           ///< surfaces that cannot be distinguished become one:
   double alike = 600.0;        ///< in so many segments
   std::size_t most = 12;       ///< surfaces that are kept; the least used one goes
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked of an axis of the drive, and what is measured of it.
+// The commands of an axis of the drive, and its measurements.
 #pragma once
 
 #include <span>

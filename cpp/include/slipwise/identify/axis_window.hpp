@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One axis of the drive over a window of wheel speeds: what is known of it at first, and how its means and its end
+// One axis of the drive over a window of wheel speeds: its state at first, and how its means and its end
 // follow from the actuator and from its state at the start (derivations/actuator.md).
 #pragma once
 

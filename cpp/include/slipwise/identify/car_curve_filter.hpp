@@ -18,7 +18,7 @@ namespace slipwise {
 struct CarPrior {
   double top_speed = 4.0;  ///< at full throttle [m/s]
   double curvature = 2.0;  ///< at full steering [1/m]
-  /// What predictions take in place of what is learned meanwhile: a model as it is. Gates see what is learned.
+  /// What predictions take in place of the learned curves: a model as it is. Gates see the learned ones.
   std::optional<CarCurves> held = {};
 };
 

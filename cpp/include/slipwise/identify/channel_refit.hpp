@@ -56,7 +56,7 @@ class ChannelRefit {
 
   /// Does a slice of the work on `past` windows: the first, and those since. Whether there is more to do now.
   bool advance(std::span<const ChannelWindow> past);
-  /// What is known after all windows; the refit must have no more to do.
+  /// The estimate after all windows; the refit must have no more to do.
   const ActuatorChannel& result() const { return channel_; }
 
   /// \throws std::invalid_argument where a loaded one is none of the channel `made` and so many windows.

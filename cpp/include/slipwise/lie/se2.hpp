@@ -20,7 +20,7 @@ struct Pose2 {
   static Pose2 from_vector(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 };
 
-/// What is left of a chart (x, y, theta) that was predicted: the turn by its shorter way.
+/// The residual of a predicted chart (x, y, theta): the turn by its shorter way.
 inline Eigen::Vector3d chart_error(const Eigen::Vector3d& measured, const Eigen::Vector3d& predicted) {
   Eigen::Vector3d error = measured - predicted;
   error.z() = wrap_angle(error.z());

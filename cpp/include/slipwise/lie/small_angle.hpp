@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sin(f)/f and its friends, exact to rounding at every angle; nobody tests for small angles anywhere else.
+// sin(f)/f and its friends, exact to rounding at every angle; no other place tests for small angles.
 #pragma once
 
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #ifndef SLIPWISE_SENSITIVITY
 
-/// A constant that was chosen, and changes what is learned.
+/// A chosen constant that changes the learned model.
 #define SLIPWISE_TUNING(name, value) constexpr auto name = (value)  // NOLINT(bugprone-macro-parentheses): it is a name
 /// Another that is made from such.
 #define SLIPWISE_TUNED constexpr

@@ -15,7 +15,7 @@
 
 namespace slipwise {
 
-/// What is known where limits are looked for.
+/// The estimate under which limits are looked for.
 struct LimitData {
   std::span<const WheelSegment> wheels;     ///< the last commands with the wheel speeds that followed
   std::span<const DrivenSegment> segments;  ///< the last segments between poses, driven by commands
@@ -28,16 +28,16 @@ struct LimitData {
 /// What a search for limits found.
 struct ActuatorLimits {
   LimitSearch search;
-  /// What is known behind the limits; nothing where none were found, or where they do not predict better.
+  /// The estimate behind the limits; empty if none were found, or if they do not predict better.
   std::shared_ptr<const MotionPosterior> posterior;
   double score;  ///< log score of segments that were not learned, over that without limits
 };
 
 /// Searches the wheel speeds for limits, learns the actuator model again behind those found, and compares both by
-/// segments of poses that end after what they are learned from. Nothing where there are too few wheel speeds.
+/// segments of poses that end after the data of the limits. Empty if there are too few wheel speeds.
 std::optional<ActuatorLimits> find_actuator_limits(const LimitData& data);
 
-/// The limits that the twists of stretches show; nothing where there are too few twists.
+/// The limits that the twists of stretches show; empty if there are too few twists.
 std::optional<LimitSearch> search_limits(std::span<const WheelSegment> driven, const PriorSettings& prior,
                                          double wheel_separation);
 

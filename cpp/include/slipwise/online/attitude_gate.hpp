@@ -26,7 +26,7 @@ struct AttitudeMounting {
 /// No robot drives tilted by more than 45 degrees for half of the time: it is the sensor that is tilted on the robot.
 class AttitudeGate {
  public:
-  /// Roll in (-pi, pi] and pitch in [-pi/2, pi/2] of the robot; nothing where no robot could drive like that, or the
+  /// Roll in (-pi, pi] and pitch in [-pi/2, pi/2] of the robot; empty if no robot could drive like that, or the
   /// mounting is not known.
   std::optional<Tilt> level(const Tilt& measured);
   AttitudeMounting mounting() const;

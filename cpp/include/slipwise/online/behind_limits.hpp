@@ -16,7 +16,7 @@ namespace slipwise {
 /// The segment under what the limits let through of its commands.
 DrivenSegment behind(const DrivenSegment& segment, const CommandLimits& limits);
 
-/// What is known without limits and behind them, of the same data.
+/// The estimates without limits and behind them, of the same data.
 struct LimitContest {
   const MotionPosterior& without;
   const MotionPosterior& with;

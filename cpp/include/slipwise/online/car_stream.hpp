@@ -23,7 +23,7 @@ class CarStream {
 
   /// Another run begins; what was learned stays.
   void start_run();
-  /// About what the car does under a command, by what is known `latency` before it: the faster of what it does and
+  /// About what the car does under a command, by the estimate `latency` before it: the faster of what it does and
   /// what it goes towards. For gates; v is the throttle, omega the steering.
   BodyTwist expected(const InputSample& command, double latency) const;
   void push_command(const InputSample& command, double latency);

@@ -19,7 +19,7 @@ class ChordFinder {
   explicit ChordFinder(const Pose2& sensor) : sensor_(sensor) {}
 
   /// The position with the headings of two chords, one position apart, the shorter in use; `inputs` are known until its
-  /// stamp. Nothing where the robot came no chord's length along, or the inputs do not say how.
+  /// stamp. Empty if the robot came no chord's length along, or the inputs do not say how.
   std::optional<MeasuredPose> push(const MeasuredPose& position, const InputBuffer& inputs);
 
   /// Names what is saved.

@@ -32,7 +32,7 @@ class GyroBuffer {
   void see_inputs(double t, const InputBuffer& inputs, double still_speed);
   /// Learns the bias from where a position's course heads.
   void see_course(const MeasuredPose& position);
-  /// The turn over [start, end] [s]; nothing where samples are missing.
+  /// The turn over [start, end] [s]; empty if samples are missing.
   std::optional<GyroTurn> turn(double start, double end) const;
   /// [rad/s], and its standard deviation.
   double bias() const { return bias_; }

@@ -101,7 +101,7 @@ struct HeldOutColumns {
 /// The errors of one horizon: each structure's are a population of their own.
 class HorizonErrors {
  public:
-  /// What is known of errors at some time.
+  /// The statistics of errors at some time.
   struct Known {
     double until;                                ///< stamp of the last error [s]
     std::array<StudentT, kStructures> students;  ///< of predictions that follow recent segments

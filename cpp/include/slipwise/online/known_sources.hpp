@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of several sources of poses, and what becomes of their segments.
+// Estimates of several pose sources, and the way of their segments.
 #pragma once
 
 #include <cstddef>
@@ -24,14 +24,14 @@ class KnownSources {
   KnownSources() = default;
   KnownSources(const StreamSettings& stream, const CausalFilterSettings& filter);
 
-  /// Learns what a segment says of its source by what is known of the motion; returns what is to be learned now.
+  /// Learns what a segment says of its source under the estimated motion; returns what is to be learned now.
   /// `poor` tells whether its errors are too large.
   struct Found {
     std::vector<DrivenSegment> learned;
     bool poor = false;
   };
   Found see(const MotionPosterior& posterior, SourceSegment item);
-  /// What is left of a run.
+  /// The rest of a run.
   std::vector<DrivenSegment> finish() { return counted(merge_.finish()); }
   void start_run();
   /// Segments of the first source that wait.

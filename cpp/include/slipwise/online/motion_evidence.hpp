@@ -70,7 +70,7 @@ class MotionEvidence {
   const std::vector<WheelProbe>& probes() const { return probes_.probes(); }
   const std::deque<GyroTurns>& gyro_turns() const { return gyro_turns_; }
   const GateCounts& counts() const { return counts_; }
-  /// What an hour of good driving hides; nothing where all that was driven is recent.
+  /// What an hour of good driving hides; empty if the whole drive is recent.
   std::optional<RecentEvidence> recent() const;
   /// How much was compared so far: it grows while inputs drive the robot.
   std::size_t compared() const { return measured_.driven() + gyro_seconds_; }

@@ -47,7 +47,7 @@ struct LearnerEvent {
   Reason reason = Reason::NotFinite;
   std::array<StructureUpdate, kStructures> updates = {};
   std::array<double, kStructures> weights = {};
-  /// What each structure knows after the segment; nothing where it is not tried.
+  /// What each structure knows after the segment; empty if it is not tried.
   std::array<std::shared_ptr<const MotionPosterior>, kStructures> posteriors = {};
   std::shared_ptr<const HeldOutPrediction> prediction = {};
   /// After a segment that was learned, where surfaces are remembered: how probable each is.
@@ -121,7 +121,7 @@ class MotionLearner {
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
   void push_attitude(double t, double roll, double pitch);
 
-  /// What happened since the last call; the oldest are dropped, and counted, where nobody asks for long.
+  /// What happened since the last call; the oldest are dropped, and counted, when they wait for long.
   std::vector<LearnerEvent> events();
   std::size_t dropped_events() const { return dropped_events_; }
 
@@ -130,10 +130,10 @@ class MotionLearner {
   /// \throws std::invalid_argument when the horizon is not positive or longer than an hour, or an input is impossible.
   PredictedPath predict(const std::vector<InputSample>& future, double horizon, double embargo = 0.0);
   /// Where the robot is at the newest measurement: the measured poses, and the learned motion since the last of them.
-  /// Nothing before the first pose of the run. It changes nothing of what is learned, and it is not saved: a learner
+  /// Nothing before the first pose of the run. It does not change the learned model, and it is not saved: a learner
   /// that was loaded begins again with the next pose, for the robot may have been moved meanwhile.
   std::optional<Odometry> odometry();
-  /// Whether the robot moves as its inputs and the learned model say it must. It changes nothing of what is learned,
+  /// Whether the robot moves as its inputs and the learned model say it must. It does not change the learned model,
   /// and it is not saved.
   MotionState motion_monitor();
   /// A copy whose run has ended.
@@ -142,7 +142,7 @@ class MotionLearner {
   LearnedModel model() const;
   /// Looks for limits of the actuator in the last commands and wheel speeds, or twists between poses where there are no
   /// wheel speeds, and keeps them where they predict better. This takes up to seconds, and changes nothing of what is
-  /// learned. Nothing where there are too few of these.
+  /// learned. Empty if there are too few of these.
   std::optional<ActuatorLimits> find_limits(double wheel_separation) const;
   /// Gives what is the terrain's `fraction` of its prior variance back: a cue from any other sensor.
   /// \throws std::invalid_argument when the fraction is not between 0 and 1.
@@ -150,7 +150,7 @@ class MotionLearner {
   /// Another drive begins, after a while or elsewhere: the run so far is complete, and where surfaces are remembered,
   /// each of them may be the one under the robot. What was learned of the robot stays.
   void start_drive(const DriveStart& start = {});
-  /// The surface changes now, somebody says: to the one of this name, or to another where it is empty. Where no
+  /// The surface changes now by a label: to the one of this name, or to another where it is empty. Where no
   /// surfaces are remembered, a name says nothing, and none gives slip `change.forget` of its prior variance back.
   void cue_surface(const std::string& label);
   /// A sensor says what the terrain under the robot is now: a prior for the surfaces that it said that on before, as
@@ -159,11 +159,11 @@ class MotionLearner {
   void cue_terrain(const TerrainAnswer& answer);
   /// The surfaces that are remembered, the present one as it is known now.
   SurfaceBank surfaces() const;
-  /// How probable each surface is to be the one under the robot; nothing where none are remembered.
+  /// How probable each surface is to be the one under the robot; empty if none are remembered.
   std::vector<SurfaceProbability> probable_surfaces() const { return hypotheses_.probable_surfaces(); }
-  /// What happened to them since the last call; the oldest are dropped where nobody asks for long.
+  /// What happened to them since the last call; the oldest are dropped when they wait for long.
   std::vector<DatedSurfaceEvent> surface_events();
-  /// Slip on a surface of `surfaces()` in the terms of a structure; nothing where it has no memory.
+  /// Slip on a surface of `surfaces()` in the terms of a structure; empty if it has no memory.
   std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const {
     return hypotheses_.on_surface(surface, structure);
   }
@@ -178,7 +178,7 @@ class MotionLearner {
   /// \throws std::invalid_argument when the terms are not those that are learned.
   std::vector<std::string> add_surfaces(const KnownBefore& other);
 
-  /// What is known of the sources of poses, where there are several.
+  /// Estimates of the sources of poses, where there are several.
   const KnownSources& sources() const { return sources_; }
   /// How the sensor of roll and pitch sits on the robot.
   AttitudeMounting attitude_mounting() const { return stream_.attitudes().mounting(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The motion of the pose sensor over a short stretch of time by what is known, its errors told apart by how they last.
+// The motion of the pose sensor over a short stretch of time by the estimate, its errors separated by how they last.
 #pragma once
 
 #include <Eigen/Core>

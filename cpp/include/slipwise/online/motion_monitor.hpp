@@ -17,7 +17,7 @@ namespace slipwise {
 /// How the robot moves beside what was expected of it.
 struct MotionState {
   bool stuck = false;                   ///< it does not move although it must
-  std::optional<double> fraction = {};  ///< of the expected motion of late; nothing where too little is expected
+  std::optional<double> fraction = {};  ///< of the expected motion of late; empty if too little is expected
   std::optional<double> since = {};     ///< stamp at which this was first seen [s], while stuck
 };
 
@@ -28,7 +28,7 @@ struct MotionState {
 /// model of before is kept, for the learner soon takes what it sees for slip.
 class MotionMonitor {
  public:
-  /// What is known at a time, what it expects of a stretch, nothing where the inputs are not known, and how fast the
+  /// The estimate at a time, what it expects of a stretch, empty without known inputs, and how fast the
   /// inputs of a stretch are [m/s, turns included].
   struct Model {
     std::function<LegKnowledge(double t)> known;

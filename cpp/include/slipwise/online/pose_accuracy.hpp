@@ -15,7 +15,7 @@ struct PoseStd {
 };
 
 /// One of them beside the geometric mean of those of late. Only the ratio is used: how large errors are on the whole is
-/// learned from residuals, since many programs state a constant that nobody measured, or a sum that grows for ever.
+/// learned from residuals, since many programs state an unmeasured constant, or a sum that grows for ever.
 class NominalStd {
  public:
   /// Ratio to those before; 1 where it is the first, or zero.

@@ -36,8 +36,8 @@ struct SensorPose {
 /// filter learns them; how they hang together with the pose is followed (a Schmidt filter), so that they are not taken
 /// for new ones at each step. States at the poses are kept: a measurement that comes late takes effect at its stamp,
 /// and what follows is predicted again. Poses far from where the robot can be move nothing, unless three more agree
-/// with the first of them. Nothing is computed until somebody asks; who does not ask for ten seconds of poses finds the
-/// filter begun again within them.
+/// with the first of them. Nothing is computed until the first call; after ten seconds of poses
+/// without a call the filter begins again within them.
 class PoseFilter {
  public:
   /// Predicts the motion from a time to a later one [s].

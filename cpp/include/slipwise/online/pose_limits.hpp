@@ -13,7 +13,7 @@
 
 namespace slipwise {
 
-/// What is known where limits are looked for in poses.
+/// The estimate under which limits are looked for in poses.
 struct PoseLimitData {
   std::span<const WheelSegment> twists;     ///< the last commands with the twists between poses that followed
   std::span<const DrivenSegment> segments;  ///< the last segments between poses
@@ -23,7 +23,7 @@ struct PoseLimitData {
 };
 
 /// Searches the twists for limits, learns slip, lag and delay again behind those found, and compares by segments that
-/// were not learned. Nothing where there are too few twists.
+/// were not learned. Empty if there are too few twists.
 std::optional<ActuatorLimits> find_pose_limits(const PoseLimitData& data);
 
 }  // namespace slipwise

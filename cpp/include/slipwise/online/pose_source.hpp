@@ -17,7 +17,7 @@
 
 namespace slipwise {
 
-/// What is said of a source before it measures. Of the first source, what is learned is the model's own.
+/// Settings of a source before it measures. The first source's values are learned as the model's own.
 struct SourceSettings {
   Pose2 sensor = {};            ///< where it sits in base_link, as far as that is known
   double late = 0.0;            ///< seconds that its stamps are known to be late

@@ -14,11 +14,11 @@ namespace slipwise {
 /// Segments in the order of time, kept elsewhere.
 using SegmentList = std::vector<const DrivenSegment*>;
 
-/// What the last segments say of the slip now changes with a segment or with what is known, not with a prediction: what
+/// What the last segments say of the slip now changes with a segment or with the estimate, not with a prediction: what
 /// was found of late is kept, so that a prediction costs little more than its own path.
 class RecentSlip {
  public:
-  /// Where slip is after `segments`, the last of a run, by what is known of the motion: good until the next call.
+  /// Where slip is after `segments`, the last of a run, under the estimated motion: good until the next call.
   const SlipNow& after(const DisturbanceFilter& disturbance, const std::shared_ptr<const MotionPosterior>& motion,
                        const SegmentList& segments);
   /// Another run begins: segments of one run are distinguished by their ends.

@@ -6,7 +6,7 @@
 
 namespace slipwise {
 
-/// Counts from the multiple of 2^16 s (18 h) next to the first stamp towards 0: what is measured later is counted, and
+/// Counts from the multiple of 2^16 s (18 h) next to the first stamp towards 0: later measurements are counted, and
 /// handed back, exactly, and streams that arrive in another order are counted from the same.
 class RunClock {
  public:

@@ -53,7 +53,7 @@ struct TimedPose {
 /// Unwraps headings, and finds poses that are late by an unknown time.
 class PoseTimer {
  public:
-  /// The pose with what was known then; nothing where it is late.
+  /// The pose with the estimate of then; empty if it is late.
   std::optional<TimedPose> push(const MeasuredPose& pose, double late_factor);
   /// Another run begins; the intervals stay.
   void restart() { last_.reset(); }

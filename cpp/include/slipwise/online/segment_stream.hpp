@@ -33,7 +33,7 @@ namespace slipwise {
 /// How measurements become segments.
 struct StreamSettings {
   bool from_commands = true;          ///< motion is predicted from commands; otherwise from wheel speeds
-  double segment_length = 2.5;        ///< of what is learned [s]
+  double segment_length = 2.5;        ///< of a learned stretch [s]
   bool whole_frames = true;           ///< a frame that is shorter is learned as one segment
   std::optional<double> stride = {};  ///< time between the starts of segments [s]; without one they are disjoint
   SegmentRules rules = {};
@@ -52,7 +52,7 @@ struct TargetSegment {
   std::size_t horizon;  ///< among the settings'
   DrivenSegment driven;
   std::optional<InputHistory> baseline = {};  ///< what the kinematic baseline does, where it is not the inputs
-  std::array<std::size_t, 2> classes = {};    ///< of the noise of its poses, where sources are told apart
+  std::array<std::size_t, 2> classes = {};    ///< of the noise of its poses, where sources are distinguished
 };
 
 /// A segment between poses of one of several sources: it is learned where no better one covers the time.
@@ -113,7 +113,7 @@ class SegmentStream {
   const AttitudeGate& attitudes() const { return attitudes_; }
   const InputBuffer& wheels() const { return wheels_; }
   const StreamSettings& settings() const { return settings_; }
-  /// Stamps are counted from `origin` [s] from now on, which matters to what is said of them alone.
+  /// Stamps are counted from `origin` [s] from now on, which matters to messages alone.
   void count_from(double origin) { evidence_.count_from(origin); }
   /// What shows whether poses and inputs contradict each other.
   const MotionEvidence& evidence() const { return evidence_; }

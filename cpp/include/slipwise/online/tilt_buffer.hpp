@@ -17,7 +17,7 @@ class TiltBuffer {
   void push(const Tilt& tilt);
   /// The last at a stamp or before it, no older than `oldest` [s].
   std::optional<Tilt> known_at(double t, double oldest) const;
-  /// What was measured over [start, end], with one before and one after; nothing where none is known at the start.
+  /// The measurements over [start, end], with one before and one after; empty if none is known at the start.
   std::shared_ptr<const Ground> along(double start, double end, double oldest) const;
   /// The plane that the robot stands on at a stamp, as far as is known then; nothing measured later is used.
   std::shared_ptr<const Ground> from(double start, double oldest) const;

@@ -58,7 +58,7 @@ struct MppiReference {
   std::vector<float> theta;  ///< [periods] [rad], unwrapped near the robot's
 };
 
-/// What is known when a command is wanted.
+/// The robot's state when a command is wanted.
 struct MppiState {
   RolloutStart start;              ///< pose and drive now
   std::vector<DriveCommand> past;  ///< sent before, one period apart, the oldest first

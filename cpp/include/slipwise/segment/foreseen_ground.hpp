@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is known of the ground ahead when a segment begins: a prediction uses nothing that is measured later.
+// The ground ahead as known when a segment begins: a prediction uses nothing that is measured later.
 #pragma once
 
 #include <memory>

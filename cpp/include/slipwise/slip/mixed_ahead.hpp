@@ -11,7 +11,7 @@
 
 namespace slipwise {
 
-/// What is known of one surface's slip.
+/// The estimate of one surface's slip.
 struct SurfaceMoments {
   Eigen::VectorXd slip;        ///< [slip]
   Eigen::MatrixXd covariance;  ///< [slip, slip]

@@ -18,7 +18,7 @@ struct TerrainCutting {
 };
 
 /// A stream from `start` on for `seconds` at `rate` [Hz], [n, D], from samples at increasing `times` [N] with `values`
-/// [N, D]; nothing where five samples or more are missing in a row, or the rate is 0.
+/// [N, D]; empty where five samples or more are missing in a row, or the rate is 0.
 /// \throws std::invalid_argument when there are not as many values as times.
 std::optional<Eigen::MatrixXd> even_samples(const Eigen::Ref<const Eigen::VectorXd>& times,
                                             const Eigen::Ref<const SampleRows>& values, double start,

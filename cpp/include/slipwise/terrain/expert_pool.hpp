@@ -18,7 +18,7 @@ struct ExpertPool {
   /// \throws std::invalid_argument when the experts differ in shape.
   Eigen::MatrixXd pooled(const Eigen::Ref<const Eigen::MatrixXd>& by_vibration,
                          const Eigen::Ref<const Eigen::MatrixXd>& by_current) const;
-  /// P(unknown) [N] where known and unknown are as likely beforehand, from pooled probabilities [N, K] and the newness
+  /// P(unknown) [N] with even prior odds, from pooled probabilities [N, K] and the newness
   /// [N] of the vibration's expert.
   Eigen::VectorXd unknown(const Eigen::Ref<const Eigen::MatrixXd>& probability,
                           const Eigen::Ref<const Eigen::VectorXd>& newness_of) const;

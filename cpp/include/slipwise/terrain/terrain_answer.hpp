@@ -12,7 +12,7 @@ namespace slipwise {
 struct TerrainAnswer {
   std::vector<std::string> classes;
   Eigen::VectorXd probability;  ///< [classes]
-  double unknown = 0.0;         ///< that it is none of them, were that as likely as not beforehand
+  double unknown = 0.0;         ///< that it is none of them, with even prior odds
 };
 
 /// \throws std::invalid_argument when there is no class, one is named twice, or a number is no probability; the

@@ -31,7 +31,7 @@ struct TerrainExperts {
 struct TerrainAnswers {
   std::vector<WindowKind> kind;
   Eigen::MatrixXd probability;  ///< of each surface, if it is one of those that were trained
-  Eigen::VectorXd unknown;      ///< that it is none of them, were that as likely as not beforehand
+  Eigen::VectorXd unknown;      ///< that it is none of them, with even prior odds
 };
 
 class TerrainClassifier {
@@ -45,7 +45,7 @@ class TerrainClassifier {
   /// \throws std::invalid_argument when there are other features than were trained with.
   TerrainAnswers answers(const Eigen::Ref<const Eigen::MatrixXd>& vibration,
                          const Eigen::Ref<const Eigen::MatrixXd>& current) const;
-  /// The same of one window; nothing where it has no measurement that is known.
+  /// The same of one window; empty if it has no known measurement.
   std::optional<TerrainAnswer> answer(const Eigen::Ref<const Eigen::VectorXd>& vibration,
                                       const Eigen::Ref<const Eigen::VectorXd>& current) const;
 

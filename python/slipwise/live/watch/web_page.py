@@ -137,7 +137,7 @@ def _reached_address(version: int) -> str:
     family, elsewhere = (socket.AF_INET6, "2001:db8::1") if version == 6 else (socket.AF_INET, "192.0.2.1")
     try:
         with socket.socket(family, socket.SOCK_DGRAM) as probe:
-            probe.connect((elsewhere, 9))  # for documentation: nobody is there
+            probe.connect((elsewhere, 9))  # an address for documents, without a host
             return str(probe.getsockname()[0])
     except OSError:
         return socket.gethostname()

@@ -14,7 +14,7 @@ namespace slipwise {
 /// covariance with the predicted pose.
 class DelayedState {
  public:
-  /// Where the pose is predicted to, and what is known of the robot at the start, as in Segment.
+  /// Where the pose is predicted to, and the robot's state at the start, as in Segment.
   struct Leg {
     double end;                             ///< [s]
     std::optional<BodyTwist> initial = {};  ///< the drive's measured twist at the start of the leg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least squares over terms (thesis 5.5) that says what it cannot determine, and the spread of what is left.
+// Least squares over terms (thesis 5.5) that says what it cannot determine, and the spread of the residuals.
 #pragma once
 
 #include <Eigen/Core>

@@ -13,7 +13,7 @@
 
 namespace slipwise {
 
-inline constexpr double kNominalWheelSeparation = 0.6;  ///< where nobody says it: of a robot the size of a Husky [m]
+inline constexpr double kNominalWheelSeparation = 0.6;  ///< the default: of a robot the size of a Husky [m]
 
 /// full-linear-6 behind an identity actuator: what slip ratios are predicted with.
 MotionModel slip_ratio_model();
