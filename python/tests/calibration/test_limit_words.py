@@ -33,15 +33,14 @@ def with_slowest(speed: float, turn: float) -> Inputs:
 def test_what_rounding_leaves_of_zero_is_no_command() -> None:
     search = searched(with_slowest(0.2, 0.1 + 0.2 - 0.3))
     assert search.reach[1].slowest >= 0.1 - 1e-12
-    assert f"command less than 0.10 m/s or {search.reach[1].slowest:.2f} rad/s" in " ".join(
-        limits_advice(search)
-    )
+    words = f"the smallest commands were 0.10 m/s and {search.reach[1].slowest:.2f} rad/s"
+    assert words in " ".join(limits_advice(search))
 
 
-def test_nobody_is_sent_to_command_less_than_a_dead_band_can_be() -> None:
+def test_commands_that_are_too_small_for_a_dead_band_are_not_named() -> None:
     text = " ".join(limits_advice(searched(with_slowest(0.05, 1e-4))))
-    assert "command less than 0.050 m/s to see one" in text
-    assert "dead-band" not in " ".join(limits_advice(searched(with_slowest(1e-4, 1e-4))))
+    assert "the smallest commands were 0.050 m/s." in text
+    assert "dead band" not in " ".join(limits_advice(searched(with_slowest(1e-4, 1e-4))))
 
 
 def test_limits_that_are_left_out_are_named() -> None:

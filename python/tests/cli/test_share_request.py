@@ -44,8 +44,8 @@ def test_options_that_cannot_be_are_one_line(
     for options, message in [
         (("-o", "s.csv", "--card"), "a data set to share is Parquet"),
         (("-o", "s.parquet", "--licence", "MIT"), "no card is written"),
-        (("-o", "s.parquet", "--keep", "x"), "nothing is left out"),
-        (("-o", "s.parquet", "--card", "--robot", " "), "nothing is said"),
+        (("-o", "s.parquet", "--keep", "x"), "no columns are removed"),
+        (("-o", "s.parquet", "--card", "--robot", " "), "no text given"),
         (("-o", "s.parquet", "--anonymise", "--keep", "gyro"), "no column gyro to keep"),
     ]:
         with subtests.test(options=options, message=message):

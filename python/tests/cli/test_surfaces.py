@@ -84,5 +84,8 @@ def test_what_contradicts_itself_is_refused(slipwise: Slipwise, folder: Path, lo
     assert "add --memory" in slipwise("evaluate", logs[0], "--surface", "sand").line
     assert "smoothing is over one surface" in slipwise(*LEARN, logs[0], "--set", "smoothing.smooth=true").line
     assert "no log given" in slipwise(*LEARN, folder / "m.yaml").line
-    assert "from one model" in slipwise(*LEARN, folder / "a.yaml", folder / "b.yaml", logs[0]).line
+    assert (
+        "only one model can be continued"
+        in slipwise(*LEARN, folder / "a.yaml", folder / "b.yaml", logs[0]).line
+    )
     assert "2 labels for 3 logs" in slipwise(*LEARN, *logs, "--surface", "a", "--surface", "b").line

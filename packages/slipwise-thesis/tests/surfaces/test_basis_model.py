@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from surfaces.known_surface import BASIS, draw
+from known_surface import BASIS, draw
 
 import slipwise as sw
 from slipwise import _core

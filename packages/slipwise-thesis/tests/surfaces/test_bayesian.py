@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from surfaces.known_surface import ALPHA, BASIS, draw
+from known_surface import ALPHA, BASIS, draw
 
 from slipwise.errors import SettingsError
 from slipwise_thesis.surfaces import (

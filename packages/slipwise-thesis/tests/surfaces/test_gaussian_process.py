@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from surfaces.known_surface import draw, true_slip
+from known_surface import draw, true_slip
 
 pytest.importorskip("sklearn", reason="the Gaussian process needs scikit-learn")
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from surfaces.known_surface import ALPHA, BASIS, draw, noise_std, true_slip
+from known_surface import ALPHA, BASIS, draw, noise_std, true_slip
 
 from slipwise import _core
 from slipwise.errors import SettingsError

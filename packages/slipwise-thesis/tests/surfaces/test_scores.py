@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from surfaces.known_surface import BASIS, draw, noise_std
+from known_surface import BASIS, draw, noise_std
 
 from slipwise import _core
 from slipwise_thesis.surfaces import (
