@@ -47,7 +47,17 @@ def read_dataflash(path: Path) -> FlightMessages:
     with _reading(path):
         from pymavlink.DFReader import DFReader_binary
 
-        log = DFReader_binary(str(path))
+        class Reader(DFReader_binary):  # type: ignore[misc]
+            """Ends at a message that says that it has no length, which pymavlink reads for ever."""
+
+            def _parse_next(self) -> Any:
+                begin = self.offset
+                message = super()._parse_next()
+                if message is not None and self.offset <= begin:
+                    raise EOFError(f"a message without length at byte {begin}")
+                return message
+
+        log = Reader(str(path))
         try:
             return _collected("dataflash", log, DATAFLASH_FIELDS, ("PARM", "Name", "Value"))
         finally:

@@ -142,6 +142,17 @@ def test_damaged_bytes_never_end_otherwise_than_in_a_log_or_a_log_error(file: Pa
             assert len(open_log(file, options=OPTIONS).runs) == 1
 
 
+def test_a_message_without_length_is_not_read_for_ever(tmp_path: Path) -> None:
+    path = write_dataflash(tmp_path / "a.bin", made_flight(1.0))
+    data = bytearray(path.read_bytes())
+    name = data.index(b"XKF1")  # in the message that declares it, before its format and labels
+    data[name - 1] = 0  # its length
+    data[name + 4 : name + 84] = bytes(80)
+    path.write_bytes(data)
+    with pytest.raises(LogError, match="a message without length"):
+        open_log(path)
+
+
 def test_a_log_without_poses_names_what_there_is(tmp_path: Path) -> None:
     path = write_dataflash(tmp_path / "a.bin", made_flight(1.0))
     path.write_bytes(path.read_bytes().replace(b"XKF1", b"XKFX").replace(b"GPS\0", b"GPX\0"))
