@@ -22,7 +22,7 @@ def draw_page(chapters: Sequence[ChapterResult]) -> str:
     body = "\n".join(_chapter(chapter) for chapter in chapters)
     first = f"<section>{paragraph(INTRODUCTION, kind='explanation')}{contents}</section>"
     whole = f"<nav>{links}</nav>\n<main>\n{first}\n{body}\n</main>"
-    return document(TITLE, "slipwise reproduce thesis", whole)
+    return document(TITLE, "slipwise reproduce thesis", whole, solids=True)
 
 
 def _contents(chapter: ChapterResult) -> str:

@@ -45,15 +45,16 @@ def page_of(title: str, kicker: str, parts: Sequence[Part]) -> str:
     return document(title, kicker, "<main>\n" + "\n".join(bodies) + "\n</main>")
 
 
-def document(title: str, kicker: str, body: str) -> str:
+def document(title: str, kicker: str, body: str, *, solids: bool = False) -> str:
     """Return a whole document around HTML with figures; only its own scripts may run, nothing may be fetched.
 
     Args:
         title: heading of the page, any text.
         kicker: a few words above the heading.
         body: HTML that follows the heading.
+        solids: whether figures have three dimensions; the page is 3 MB larger then.
     """
-    plotly, script = drawing_script(), _asset("report.js")
+    plotly, script = drawing_script(solids=solids), _asset("report.js")
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_policy(plotly, script)}">\n'
@@ -67,8 +68,12 @@ def document(title: str, kicker: str, body: str) -> str:
     )
 
 
-def drawing_script() -> str:
-    """Return plotly.js (MIT) without maps and three dimensions, a third of the whole: pages stay small."""
+def drawing_script(*, solids: bool = False) -> str:
+    """Return plotly.js (MIT), without `solids` less its maps and three dimensions: a third of the size."""
+    if solids:
+        from plotly.offline import get_plotlyjs
+
+        return str(get_plotlyjs())
     packed = resources.files("slipwise.reporting").joinpath("plotly-cartesian.min.js.gz").read_bytes()
     return gzip.decompress(packed).decode()
 

@@ -20,10 +20,10 @@
   const mouse = window.matchMedia("(hover: hover)").matches;
   // Every button is named here: none that a version of Plotly adds, such as one that uploads the chart, comes by itself.
   const saved = ["toImage"];
-  const modeBarButtons = [saved, ["zoom2d", "pan2d"], ["zoomIn2d", "zoomOut2d", "resetScale2d"]];
+  const flat = [saved, ["zoom2d", "pan2d"], ["zoomIn2d", "zoomOut2d", "resetScale2d"]];
+  const solid = [saved, ["orbitRotation", "pan3d", "zoom3d"], ["resetCameraDefault3d"]];
   const config = {
     responsive: true,
-    modeBarButtons,
     displayModeBar: mouse ? "hover" : false,
     displaylogo: false,
     showTips: false,
@@ -60,8 +60,10 @@
     try {
       const figure = themed(JSON.parse(sources.get(name).textContent));
       figure.layout.dragmode = mouse ? "zoom" : false; // a finger on a figure scrolls the page
+      if (figure.layout.scene) figure.layout.dragmode = "turntable";
       if (pressed(logButton(name))) figure.layout.yaxis.type = "log";
-      await Plotly.react(place, figure.data, figure.layout, config);
+      const modeBarButtons = figure.layout.scene ? solid : flat;
+      await Plotly.react(place, figure.data, figure.layout, { ...config, modeBarButtons });
       place.dataset.drawn = "yes";
       drawn.add(name);
       state.drawn = String(drawn.size);
@@ -71,10 +73,26 @@
     }
   };
 
+  // A browser keeps about sixteen drawings in three dimensions; where there are more, only those near the window are.
+  const scenes = Array.from(sources.keys()).filter((name) => JSON.parse(sources.get(name).textContent).layout.scene);
+  const passing = new Set(scenes.length > 8 ? scenes : []);
+  const nearby = new IntersectionObserver((entries) => {
+    for (const { isIntersecting, target } of entries) {
+      if (!isIntersecting) {
+        Plotly.purge(target);
+      } else if (!target.querySelector(".main-svg")) {
+        draw(target.id);
+      }
+    }
+  }, { rootMargin: "300px" });
+
   const folded = (name) => document.getElementById(name).closest("details:not([open])") !== null;
   const drawAll = async (again) => {
     for (const name of sources.keys()) {
-      if (again ? drawn.has(name) : !drawn.has(name) && !folded(name)) {
+      if (passing.has(name)) {
+        nearby.observe(document.getElementById(name));
+        if (again && document.getElementById(name).querySelector(".main-svg")) await draw(name);
+      } else if (again ? drawn.has(name) : !drawn.has(name) && !folded(name)) {
         await draw(name);
         await new Promise((resume) => setTimeout(resume)); // lets the page scroll meanwhile
       }

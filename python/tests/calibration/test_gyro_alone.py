@@ -91,7 +91,7 @@ def test_a_table_without_poses_gives_a_model_of_turns_and_says_what_it_is(tmp_pa
     verdict = calibration.verdict
     assert verdict.good
     assert "Only yaw rates were measured" in verdict.sentence
-    assert "mean heading error" in verdict.sentence
+    assert "heading misses by" in verdict.sentence
     known = [name for name, value in calibration.model.parameters.items() if value.identified]
     assert any(name.startswith("ang.") for name in known)
     assert not any(name.startswith(("lon.", "lat.")) for name in known)

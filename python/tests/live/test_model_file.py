@@ -33,14 +33,13 @@ def reads(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("memory", [True, "model.yaml"])
 def test_start_and_memory_of_one_file_read_it_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reads: list[str], memory: bool | str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reads: list[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     model_of_floors(FIRM, LOOSE).save(Path("model.yaml"))
-    settings = live_settings(Settings(), {"model": "model.yaml", "memory": memory})
-    settings = with_memory(settings, chosen=False)
+    settings = live_settings(Settings(), {"model": "model.yaml", "memory": True})
+    settings = with_memory(settings)
     built = build_node(Scripted([]), "wheel", settings, run="test")
     assert built.learning.start is not None
     assert reads == ["model.yaml"]

@@ -16,6 +16,8 @@ HARMLESS = {
     "Zoom in",
     "Zoom out",
     "Reset axes",
+    "Orbital rotation",
+    "Reset camera to default",
 }
 TITLES = "Array.from(document.querySelectorAll('.modebar-btn')).map(b => b.dataset.title)"
 SERVERS = (
