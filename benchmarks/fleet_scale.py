@@ -44,6 +44,7 @@ from slipwise.fleet import (
 from slipwise.fleet.fleet_page import fleet_page
 from slipwise.fleet.learn_fleet import Count, learn_fleet
 from slipwise.fleet.learned_rows import key_of, log_hash, settings_hash
+from slipwise.fleet.vehicle_numbers import VehicleNumbers
 
 TEMPLATES = "FLEET_SCALE_TEMPLATES"  # file of learned rows that workers hand out
 LOGS_OF_A_VEHICLE = 50
@@ -89,7 +90,16 @@ def measure_learning(folder: Path, workers: Sequence[int], templates: Path) -> d
 @functools.cache
 def _templates(path: str) -> list[LogRows]:
     entries = json.loads(Path(path).read_text(encoding="utf-8"))
-    return [LogRows(**entry | {"rows": tuple(Row(**row) for row in entry["rows"])}) for entry in entries]
+    return [
+        LogRows(
+            **entry
+            | {
+                "rows": tuple(Row(**row) for row in entry["rows"]),
+                "numbers": VehicleNumbers(**entry["numbers"]),
+            }
+        )
+        for entry in entries
+    ]
 
 
 def cached_work(task: LogTask) -> LogRows:

@@ -44,11 +44,12 @@ class Result:
 
     @property
     def line(self) -> str:
-        """The one line that an error is."""
+        """The one line that an error is; notes about older names may stand before it."""
         assert self.err.endswith("\n")
-        assert self.err.count("\n") == 1, self.err
-        assert self.err.startswith("slipwise: ")
-        return self.err.removeprefix("slipwise: ").rstrip("\n")
+        said = [line for line in self.err.splitlines() if not line.startswith("note: ")]
+        assert len(said) == 1, self.err
+        assert said[0].startswith("slipwise: ")
+        return said[0].removeprefix("slipwise: ")
 
 
 def make_columns(drive: Drive) -> Columns:
