@@ -8,6 +8,7 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
+#include "pose_matrix.hpp"
 #include "slipwise/segment/foreseen_ground.hpp"
 #include "slipwise/segment/ground.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
@@ -19,14 +20,6 @@ using namespace nb::literals;
 
 namespace slipwise::bindings {
 namespace {
-
-Eigen::MatrixX3d pose_matrix(const std::vector<Pose2>& poses) {
-  Eigen::MatrixX3d matrix(static_cast<Eigen::Index>(poses.size()), 3);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    matrix.row(static_cast<Eigen::Index>(i)) = poses[i].vector();
-  }
-  return matrix;
-}
 
 void bind_ground(nb::module_& m) {
   nb::class_<ElevationMap>(m, "ElevationMap", "Elevations on a grid, a row for each y, a column for each x.")

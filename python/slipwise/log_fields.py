@@ -46,8 +46,9 @@ class About(NamedTuple):
 
 def _key(kind: Kind, metavar: str, text: str, *, default: Any = None, example: str = "") -> Any:
     about = {"kind": kind, "metavar": metavar, "help": text, "example": example}
-    made = (dict) if kind is Kind.columns else None
-    return field(default_factory=made, metadata=about) if made else field(default=default, metadata=about)
+    if kind is Kind.columns:  # a dict is no default of a field
+        return field(default_factory=dict, metadata=about)
+    return field(default=default, metadata=about)
 
 
 @dataclass(frozen=True)

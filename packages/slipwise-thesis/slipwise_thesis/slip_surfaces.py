@@ -33,10 +33,8 @@ from slipwise_thesis.window_examples import window_examples
 Floats = NDArray[np.float64]
 
 CHAIN_BASIS = "edd-2"  # its filter gives lag, delay and clock offset, which surfaces have none of
-LARGEST_PROCESS, SHAPING = (
-    200,
-    60,
-)  # examples of a Gaussian process, O(N^3), and those its kernel is shaped by
+LARGEST_PROCESS = 200  # examples of a Gaussian process, O(N^3)
+SHAPING = 60  # examples that its kernel is shaped by
 UNDRIVEN = (0.05, 0.05)  # m/s, rad/s: reference speeds of the prior before the first example
 #: Examples grow by this factor from one fit to the next; the Bayesian surface also learns in between.
 INFLATION = {"surface-least-squares": 1.1, "surface-gaussian-process": 2.0, "surface-bayesian": 2.0}

@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "checked_shapes.hpp"
+#include "pose_matrix.hpp"
 #include "slipwise/thesis/noise_fit.hpp"
 #include "slipwise/thesis/slip_rate_fit.hpp"
 #include "slipwise/thesis/steady_segment.hpp"
@@ -16,14 +17,6 @@ using namespace nb::literals;
 
 namespace slipwise::bindings {
 namespace {
-
-Eigen::MatrixX3d pose_matrix(const std::vector<Pose2>& poses) {
-  Eigen::MatrixX3d matrix(static_cast<Eigen::Index>(poses.size()), 3);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    matrix.row(static_cast<Eigen::Index>(i)) = poses[i].vector();
-  }
-  return matrix;
-}
 
 std::vector<double> list_of(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
 
