@@ -84,5 +84,17 @@ TEST_CASE("commands later than a moment change nothing before it") {
   CHECK(before.at(1.9) != other.at(1.9));
 }
 
+TEST_CASE("a car is settled when its twist no longer changes, counted from the last command or the start") {
+  const CarCurves car = sample_car();
+  const InputHistory commands({0.0, 1.0}, {{.v = 0.6, .vy = 0.0, .omega = 0.2}, {.v = 1.0, .vy = 0.0, .omega = 0.5}});
+  const double settled = settled_after(car, commands, 0.0);
+  CHECK(settled_after(car, commands, 3.0) == doctest::Approx(settled + 2.0));
+  CHECK(settled_after(car, InputHistory(), 3.0) == doctest::Approx(settled + 2.0));
+  const BodyTwist then = last_of(car_twists(car, commands, {.start = 0.0, .end = settled}));
+  const BodyTwist later = last_of(car_twists(car, commands, {.start = 0.0, .end = settled + 20.0}));
+  CHECK(then.v == doctest::Approx(later.v).epsilon(0.02));
+  CHECK(then.omega == doctest::Approx(later.omega).epsilon(0.02));
+}
+
 }  // namespace
 }  // namespace slipwise

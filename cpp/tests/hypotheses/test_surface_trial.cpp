@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces that compete: their segments decide, and learning goes on from the one that is taken.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hypotheses/surfaces_learned.hpp"
+#include "slipwise/linear/present.hpp"
+
+namespace slipwise {
+namespace {
+
+using Kind = SurfaceCandidate::Kind;
+using tests::drive_on_surface;
+using tests::kWhiteSlip;
+using tests::remembering_average;
+using tests::surface_memories;
+
+constexpr double kNow = std::numeric_limits<double>::infinity();
+const std::vector<SurfaceCandidate> kAny{{.kind = Kind::Known, .place = 0, .prior = 0.4},
+                                         {.kind = Kind::Known, .place = 1, .prior = 0.4},
+                                         {.kind = Kind::New, .prior = 0.2}};
+
+TEST_CASE("before any segment speaks, candidates have their priors, and log factors multiply their odds") {
+  ModelAverage average = remembering_average();
+  average.open_trial(kAny, surface_memories({-0.1, -0.5}), kWhiteSlip, kNow);
+  const Eigen::VectorXd first = present(average.trial()).probabilities();
+  CHECK(first.isApprox(Eigen::Vector3d(0.4, 0.4, 0.2)));
+  average.weigh_trial(Eigen::Vector3d(0.0, std::log(4.0), std::log(2.0)));
+  CHECK(present(average.trial()).probabilities().isApprox(Eigen::Vector3d(1.0, 4.0, 1.0) / 6.0, 1e-9));
+}
+
+TEST_CASE("the surface that is driven on wins, known or new, and its estimate is gone on from") {
+  const auto known = surface_memories({-0.1, -0.5});
+  for (const auto& [slip, winner] : {std::pair{-0.1, 0}, {-0.5, 1}, {0.4, 2}}) {
+    ModelAverage average = remembering_average();
+    average.open_trial(kAny, known, kWhiteSlip, kNow);
+    CHECK(average.state().weights.sum() == doctest::Approx(1.0));
+    drive_on_surface(average, slip, 71, 6);
+    const SurfaceTrial& trial = present(average.trial());
+    CHECK(trial.segments == 6);
+    CHECK(trial.probabilities()[winner] > 0.99);
+    average.settle(static_cast<std::size_t>(winner));
+    CHECK_FALSE(average.trial());
+    CHECK(average.state().weights.size() == 2);
+    CHECK(average.state().estimate.mean[1] == doctest::Approx(slip).epsilon(0.15));
+  }
+}
+
+TEST_CASE("surfaces are as far apart as their segments would tell, in whichever order, and one is not from itself") {
+  const auto known = surface_memories({-0.1, -0.13, -0.5});
+  ModelAverage average = remembering_average();
+  CHECK(average.apart(known[0], known[2], kWhiteSlip) == 0.0);  // nothing was driven that could tell
+  drive_on_surface(average, -0.1, 72);
+  CHECK(average.apart(known[0], known[0], kWhiteSlip) == 0.0);
+  const double far = average.apart(known[0], known[2], kWhiteSlip);
+  CHECK(far > 10.0 * average.apart(known[0], known[1], kWhiteSlip));
+  CHECK(far == doctest::Approx(average.apart(known[2], known[0], kWhiteSlip)).epsilon(0.05));
+}
+
+TEST_CASE("what was known at parting is without the segments that raised the suspicion") {
+  ModelAverage average = remembering_average();
+  drive_on_surface(average, -0.1, 73, 20);
+  const SurfaceMemory before = average.remember();
+  average.start_run();
+  average.mark_parting(kNow);
+  CHECK(present(average.parting()).slips.back().mean == before.slips.back().mean);
+  drive_on_surface(average, -0.5, 74, 3);
+  average.mark_parting(0.0);  // of the drive, which begins at 0.5 s
+  CHECK(present(average.parting()).slips.back().mean == before.slips.back().mean);
+  CHECK(average.remember().slips.back().mean != before.slips.back().mean);
+}
+
+}  // namespace
+}  // namespace slipwise
