@@ -4,18 +4,26 @@
 Held-out position and heading errors at the longest horizon are over those of the kinematic baseline,
 geometric means over logs; beside them stand the change against the default, the fractions inside the
 50/90/95 % ellipsoids, processor time over the default's, and the lines of source that the mechanism costs.
+Two more tables hold mechanisms
+against the strongest simple alternative that a user would take in their place, on real logs and in
+simulations.
 
     python benchmarks/ablation.py --only warthog/ --json ablation.json
+    python benchmarks/ablation.py --alternatives
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from alternatives_of_motion import motion_rows
+from alternatives_of_poses import pose_rows
+from alternatives_of_verdicts import verdict_rows
 from data_sets import FEW, data_sets, required_folder
 from mechanisms import CALIBRATION, LIMITS, MECHANISMS, Mechanism
 from replay_score import MeanReplay, ReplayScore, mean_replay
@@ -114,7 +122,11 @@ def main() -> int:
     parser.add_argument("--few", action="store_true", help="only a few short logs of most data sets")
     parser.add_argument("--mechanism", default="", help="only mechanisms whose name contains this")
     parser.add_argument("--workers", type=int, default=2, help="processes at a time")
+    parser.add_argument("--alternatives", action="store_true", help="only the tables of alternatives")
     arguments = parser.parse_args()
+    if arguments.alternatives:
+        show_alternatives(Output(arguments.json))
+        return 0
     folder = required_folder()
     logs = [
         d.name for d in data_sets(folder) if arguments.only in d.name and (not arguments.few or d.name in FEW)
@@ -138,7 +150,31 @@ def main() -> int:
             output.table(f"From {name}s, {count} logs", COLUMNS, rows_of(others, default, name))
     output.line(limits_line(default))
     output.line(FOOTNOTE)
+    if not (arguments.only or arguments.few or arguments.mechanism):
+        show_alternatives(output)
     return 0
+
+
+BESIDE = (
+    Column("mechanism"),
+    Column("alternative"),
+    Column("where"),
+    Column("position", True),
+    Column("heading", True),
+    Column("logs", True),
+)
+VERDICTS = (Column("logs"), Column("of", True), Column("good, with", True), Column("good, without", True))
+
+
+def show_alternatives(output: Output) -> None:
+    """Show mechanisms beside their alternatives."""
+    rows = []
+    for row in (*motion_rows(), *pose_rows()):
+        errors = tuple(f"{mean:.2f}" if math.isfinite(mean) else "-" for mean in row.mean)
+        rows.append((row.mechanism, row.alternative, row.where, *errors, str(len(row.ratios))))
+    output.table("Errors over those of the alternative", BESIDE, rows)
+    verdicts = [(v.where, str(v.logs), str(v.with_it), str(v.without)) for v in verdict_rows()]
+    output.table("Models called good, with and without evidence of contradictions", VERDICTS, verdicts)
 
 
 def as_document(found: Found) -> dict[str, dict[str, object]]:

@@ -30,6 +30,7 @@ Floats = NDArray[np.float64]
 
 LOGS = ("dart_steering_steps_rubbery", "dart_rubbery_floor", "dart_tape_and_tiles")
 MARKER = (0.115, -0.01, 0.0077)  # m ahead of the rear axle and to its left, rad
+ALL = slice(None)
 STARTS = ((1.5, 2.0), (4.0, 2.0))  # m/s and 1/m, from which gains are looked for
 
 
@@ -71,18 +72,23 @@ def errors(measured: Floats, pose: Floats) -> tuple[float, float]:
     return float(np.hypot(off[:, 0], off[:, 1]).mean()), float(heading.mean())
 
 
-def best_bicycle(log: sw.Log, made: Predictions) -> tuple[float, float]:
-    """Return the errors of the bicycle whose gains suit these windows best."""
-    windows = list(zip(made.run.tolist(), made.t_start.tolist(), made.t_end.tolist(), strict=True))
-
-    def poses(gains: Floats) -> Floats:
-        return np.array([bicycle(log.runs[run], (start, end), gains) for run, start, end in windows])
+def best_gains(log: sw.Log, made: Predictions, part: slice) -> Floats:
+    """Return the gains of the bicycle that suit some windows best."""
+    measured = made.measured[part]
 
     def cost(gains: Floats) -> float:
-        return errors(made.measured, poses(gains))[0]
+        return errors(measured, bicycle_poses(log, made, part, gains))[0]
 
     found = [minimize(cost, start, method="Nelder-Mead", options={"maxiter": 60}) for start in STARTS]
-    return errors(made.measured, poses(min(found, key=lambda each: float(each.fun)).x))
+    return np.asarray(min(found, key=lambda each: float(each.fun)).x)
+
+
+def bicycle_poses(log: sw.Log, made: Predictions, part: slice, gains: Floats) -> Floats:
+    """Return the poses after some windows under two constant gains, [N, 3]."""
+    windows = zip(
+        made.run[part].tolist(), made.t_start[part].tolist(), made.t_end[part].tolist(), strict=True
+    )
+    return np.array([bicycle(log.runs[run], (start, end), gains) for run, start, end in windows])
 
 
 def row(path: Path, horizon: float) -> dict[str, object]:
@@ -91,7 +97,10 @@ def row(path: Path, horizon: float) -> dict[str, object]:
         log = read(path, Path(folder))
     drive = prepare_run(log, "command")
     (made,) = learn_log(drive, sw.Settings(), (horizon,)).predictions
-    auto, plain = errors(made.measured, made.pose), best_bicycle(log, made)
+    auto, plain = (
+        errors(made.measured, made.pose),
+        errors(made.measured, bicycle_poses(log, made, ALL, best_gains(log, made, ALL))),
+    )
     return {
         "log": path.name.removesuffix(".csv.gz"),
         "windows": len(made),
