@@ -160,7 +160,7 @@ $(STAMPS)/native: $(STAMPS)/env pyproject.toml constraints.txt
 
 $(STAMPS)/test: pyproject.toml constraints.txt | $(STAMPS)/thesis
 	@echo "installing what the tests need"
-	@$(PYTHON_IN) tools/requirements.py test gp plot fleet foxglove live mavlink px4 remote ros2 terrain viz > $(STAMPS)/test.txt
+	@$(PYTHON_IN) tools/requirements.py test gp plot fleet foxglove live mavlink px4 remote ros2 terrain > $(STAMPS)/test.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/test.txt
 	@touch $@
 

@@ -69,16 +69,13 @@ def live(
         optional("FILE", "With --transport stdin: write results here as JSON lines; - is standard output."),
     ] = None,
     web: Annotated[int | None, optional("PORT", "Serve a web page; default port 8088.")] = None,
-    foxglove: Annotated[
-        int | None, optional("PORT", "Serve Foxglove and Lichtblick; default port 8765.")
-    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Show errors only.")] = False,
 ) -> int:
     """Learn while the robot drives, and publish the learned model.
 
     Reads commands, wheel speeds and poses; publishes odometry with learned slip, the path ahead, the model
     and its validity below the node's name. Ctrl-C or SIGTERM ends it and writes the cache. Settings: [live],
-    such as apply, domain, network, record, duration.
+    such as apply, domain, network, duration.
 
     \b
     Examples:
@@ -108,15 +105,14 @@ def live(
     chosen = live_settings(chosen_settings(settings, changes), given)
     chosen = with_memory(chosen)
     table = chosen.live
-    record, start = (None if path is None else Path(path) for path in (table.record, table.model))
+    start = None if table.model is None else Path(table.model)
     to_file = None if results is None or str(results) == "-" else results
     refuse_unwritable(
         output,
-        record,
         to_file,
         inputs=(replay, settings, start, *log_options.files),
     )
-    shown = Shown(quiet or (results is not None and str(results) == "-"), web, foxglove)
+    shown = Shown(quiet or (results is not None and str(results) == "-"), web)
     with stopped_by_signals() as stopping:
         source = Source(replay, demo, rate, results)
         robot = open_robot(chosen, log_options, source, say=shown.say)
@@ -154,8 +150,8 @@ def live(
 class Shown:
     """What the user sees, and where."""
 
-    def __init__(self, quiet: bool, web: int | None, foxglove: int | None) -> None:
-        self.quiet, self.web, self.foxglove = quiet, web, foxglove
+    def __init__(self, quiet: bool, web: int | None) -> None:
+        self.quiet, self.web = quiet, web
 
     def say(self, text: str) -> None:
         """Print a line."""

@@ -51,7 +51,6 @@ class Show(Protocol):
 
     quiet: bool
     web: int | None
-    foxglove: int | None
 
     def say(self, text: str) -> None:
         """Print a line."""
@@ -233,18 +232,6 @@ def watchers_for(show: Show, table: LiveTable) -> list[Watcher]:
             undo.callback(page.close)
             found.append(page)
             headlines.append(f"page: {page.url}")
-        if show.foxglove is not None:
-            from slipwise.live.watch.foxglove_server import FoxgloveServer
-
-            server = FoxgloveServer(host=table.host, port=show.foxglove, name=table.node)
-            undo.callback(server.close)
-            found.append(server)
-            headlines.append(f"Foxglove, Lichtblick: {server.url}")
-        if table.record is not None:
-            from slipwise.live.watch.recorder import Recorder
-
-            found.append(Recorder(Path(table.record), name=table.node))
-            undo.callback(found[-1].close)
         found.append(ErrorLines(_complain) if show.quiet else _terminal(show, headlines))
         undo.pop_all()
     return found

@@ -12,7 +12,7 @@ from typing import Any
 from slipwise.errors import OlderNames
 
 #: Ports of `slipwise live`, where an option of a server comes without one.
-_PORTS = {"--web": "8088", "--foxglove": "8765"}
+_PORTS = {"--web": "8088"}
 
 #: By command: the option now, `--set KEY` for one that became a setting, `--set KEY=VALUE` for a flag.
 RENAMED: dict[str, dict[str, str]] = {
@@ -36,7 +36,6 @@ RENAMED: dict[str, dict[str, str]] = {
         "--address": "--set live.address",
         "--apply": "--set live.apply.mode",
         "--host": "--set live.host",
-        "--record": "--set live.record",
         "--for": "--set live.duration",
     },
 }

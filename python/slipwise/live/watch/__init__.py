@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What shows or keeps the outputs of the live node: a page, Foxglove, a recording, the terminal."""
+"""What shows or keeps the outputs of the live node: a page, the terminal."""
