@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from slipwise.cli.options import GRADE_HELP, Json, ModelFile, optional
-from slipwise.cli.pictures import PICTURE_HELP, missing_picture
 
 if TYPE_CHECKING:
     from slipwise.planning import CurvatureMap
@@ -27,24 +26,21 @@ def lattice(
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one primitive.")] = 6.0,
     grade: Annotated[str | None, optional("SLOPE,DOWNHILL", GRADE_HELP)] = None,
     curvature: Annotated[float | None, optional("1/M", "Largest of commands; by the model's range.")] = None,
-    picture: Annotated[
-        bool | None, typer.Option("--picture/--no-picture", help=PICTURE_HELP, show_default=False)
-    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Use a model with a bad verdict, too.")] = False,
     json: Json = None,
 ) -> int:
     """Write state-lattice primitives that the robot can really drive, for Nav2's Smac lattice planner.
 
     lattice.json is what `lattice_filepath` names: every primitive has the slip that the model learned, at one
-    speed, on a slope each heading its own. curvature.csv and curvature.png say what curvature the robot holds
-    at what speed and command on level ground.
+    speed, on a slope each heading its own. curvature.csv says what curvature the robot holds at what speed
+    and command on level ground.
     A model with a bad verdict is refused with exit code 1 unless --force is given.
 
     \b
     Examples:
       slipwise lattice model.yaml -o lattice/
       slipwise lattice model.yaml -o lattice/ --speed 0.8 --grid 0.1 --longest 10
-      slipwise lattice model.yaml --headings 24 --curvature 0.8 --no-picture
+      slipwise lattice model.yaml --headings 24 --curvature 0.8
       slipwise lattice model.yaml --grade 8,-90
     """  # noqa: D301
     from dataclasses import replace
@@ -58,13 +54,9 @@ def lattice(
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.models import load_model
     from slipwise.planning import LatticeOptions, curvature_map, limits_of, write_lattice
-    from slipwise.reporting.curvature_picture import write_curvature_picture
 
     out = Output(json)
-    left_out = missing_picture(picture)
-    drawn = picture is not False and not left_out
-    names = {"lattice": "lattice.json", "curvature": "curvature.csv", "picture": "curvature.png"}
-    files = {kind: output / name for kind, name in names.items() if drawn or kind != "picture"}
+    files = {"lattice": output / "lattice.json", "curvature": output / "curvature.csv"}
     refuse_unwritable(*files.values(), out.written_file, inputs=[model])
     learned = load_model(model)
     if not learned.content.verdict.good and not force:
@@ -74,19 +66,14 @@ def lattice(
     limits = limits_of(learned)
     limits = limits if curvature is None else replace(limits, curvature=curvature)
     held = curvature_map(learned, limits=limits)
-    if drawn:
-        write_curvature_picture(files["picture"], held, model.name)
     _write_table(files["curvature"], held)
     written = write_lattice(files["lattice"], learned, options=options, limits=limits, grade=grade_of(grade))
     text = written.read_text(encoding="utf-8")
     metadata = loads(text)["lattice_metadata"]
-    notes = [left_out] if left_out else []
-    content = {"exit_code": 0, "files": files, "notes": notes, "lattice_metadata": metadata}
+    content = {"exit_code": 0, "files": files, "lattice_metadata": metadata}
     out.document(head("lattice") | content)
     out.line(f"{metadata['number_of_trajectories']} primitives over {headings} headings at {speed:g} m/s.")
     out.line(f"Slip leaves a turning radius of {metadata['turning_radius']:.2f} m at this speed.")
-    for note in notes:
-        out.line(note)
     show_files(out, files)
     return 0
 

@@ -14,7 +14,8 @@ from slipwise.errors import OlderNames
 #: Ports of `slipwise live`, where an option of a server comes without one.
 _PORTS = {"--web": "8088"}
 
-#: By command: the option now, `--set KEY` for one that became a setting, `--set KEY=VALUE` for a flag.
+#: By command: the option now, `--set KEY` for one that became a setting, `--set KEY=VALUE` for a flag;
+#: nothing where it is gone.
 RENAMED: dict[str, dict[str, str]] = {
     "calibrate": {
         "--estimator": "--set estimator",
@@ -24,6 +25,8 @@ RENAMED: dict[str, dict[str, str]] = {
     },
     "evaluate": {"--terrain": "--surface"},
     "fleet": {"--vehicle": "--name"},
+    "plan": {"--picture": "", "--no-picture": ""},
+    "lattice": {"--picture": "", "--no-picture": ""},
     "live": {
         "--vehicle": "--name",
         "--basis": "--set basis",
@@ -48,7 +51,9 @@ def with_new_names(arguments: Sequence[str]) -> list[str]:
     result, rest = [command], iter(given)
     for argument in rest:
         name, equals, value = argument.partition("=")
-        if name in renamed:
+        if renamed.get(name) == "":
+            print(f"note: {command} {name} is gone: no PNG is written any more", file=sys.stderr)
+        elif name in renamed:
             print(f"note: {command} {name} is now {renamed[name]}", file=sys.stderr)
             result += _translated(renamed[name], value if equals else None, rest)
         elif command == "live" and result[-1] == "--memory" and argument.endswith((".yaml", ".yml")):

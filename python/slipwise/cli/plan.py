@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from slipwise.cli.options import GRADE_HELP, Json, optional
-from slipwise.cli.pictures import PICTURE_HELP, missing_picture
 
 if TYPE_CHECKING:
     from slipwise.reporting.plan_drawing import Plan
@@ -23,15 +22,12 @@ def plan(
     start: Annotated[str, typer.Option("--from", metavar="X,Y,YAW", help="Where the robot stands: m, rad.")],
     goal: Annotated[str, typer.Option("--to", metavar="X,Y,YAW", help="Where it is to stand: m, rad.")],
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="STEM", help="Files STEM.png, STEM.html and STEM.csv.")
+        Path, typer.Option("-o", "--output", metavar="STEM", help="Files STEM.html and STEM.csv.")
     ] = Path("plan"),
     radius: Annotated[float, typer.Option(metavar="METRES", help="Of a disc that covers the robot.")] = 0.5,
     cruise: Annotated[float | None, optional("M/S", "Speed; 0.7 of the model's range by default.")] = None,
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one manoeuvre.")] = 10.0,
     grade: Annotated[str | None, optional("SLOPE,DOWNHILL", GRADE_HELP)] = None,
-    picture: Annotated[
-        bool | None, typer.Option("--picture/--no-picture", help=PICTURE_HELP, show_default=False)
-    ] = None,
     seed: Annotated[int, typer.Option(metavar="N", help="Of the search round obstacles.")] = 1,
     most_cells: Annotated[
         int,
@@ -63,10 +59,8 @@ def plan(
     from slipwise.reporting.plan_page import summary
 
     out = Output(json)
-    left_out = missing_picture(picture)
     learned, grid = load_model(model), load_map(map_file, most_cells=most_cells)
-    kinds = ("png", "html", "csv") if picture is not False and not left_out else ("html", "csv")
-    files = {kind: output.with_name(f"{output.name}.{kind}") for kind in kinds}
+    files = {kind: output.with_name(f"{output.name}.{kind}") for kind in ("html", "csv")}
     refuse_unwritable(*files.values(), out.written_file, inputs=(model, map_file, image_of(map_file)))
     begin, end = pose_of(start, "--from"), pose_of(goal, "--to")
     planner = RoutePlanner(
@@ -78,9 +72,8 @@ def plan(
     )
     drawn = Plan(planner.route(begin, end), grid, radius, begin, end, f"{model.name} on {map_file.name}")
     _write(files, drawn)
-    notes = [left_out] if left_out else []
-    out.document(head("plan") | {"exit_code": 0, "files": files, "notes": notes} | _figures(drawn))
-    for sentence in (*summary(drawn), *notes):
+    out.document(head("plan") | {"exit_code": 0, "files": files} | _figures(drawn))
+    for sentence in summary(drawn):
         out.line(sentence)
     show_files(out, files)
     return 0
@@ -89,10 +82,7 @@ def plan(
 def _write(files: dict[str, Path], drawn: Plan) -> None:
     from slipwise.files import write_text_whole
     from slipwise.reporting.plan_page import plan_page
-    from slipwise.reporting.plan_picture import write_plan_picture
 
-    if "png" in files:
-        write_plan_picture(files["png"], drawn)
     write_text_whole(files["html"], plan_page(drawn))
     rows = "".join(f"{t:.6f},{v:.6f},{w:.6f}\n" for t, v, w in drawn.route.trajectory.commands.tolist())
     write_text_whole(files["csv"], "t,cmd_v,cmd_omega\n" + rows)

@@ -6,14 +6,11 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import io
-from pathlib import Path
 from typing import Any
 
 from slipwise.errors import SlipwiseError
 from slipwise.extras import to_install
-from slipwise.files import write_whole
 
-DPI = 150
 ADVICE = to_install("plot")
 _COLOURS = (128, 64, 32, 16)  # of a picture's palette, the most first
 
@@ -34,22 +31,12 @@ def drawing_part(name: str) -> Any:
     return importlib.import_module(f"matplotlib.{name}")
 
 
-def write_png(path: Path, figure: Any) -> Path:
-    """Write a figure, the same bytes each time; return the path of the file.
-
-    Raises:
-        OutputError: the file cannot be written.
-    """
-    write_whole(path, lambda target: _save(figure, target, DPI))
-    return path
-
-
 def small_png(figure: Any, *, dpi: int, largest: int) -> bytes:
     """Return a figure as PNG with as many colours as fit into `largest` bytes, 16 at the least."""
     from PIL import Image  # Matplotlib brings it
 
     drawn = io.BytesIO()
-    _save(figure, drawn, dpi)
+    figure.savefig(drawn, format="png", dpi=dpi, metadata={"Software": None})
     image = Image.open(drawn).convert("RGB")
     for colours in _COLOURS:
         small = io.BytesIO()
@@ -59,7 +46,3 @@ def small_png(figure: Any, *, dpi: int, largest: int) -> bytes:
         if small.tell() <= largest:
             break
     return small.getvalue()
-
-
-def _save(figure: Any, target: Path | io.BytesIO, dpi: int) -> None:
-    figure.savefig(target, format="png", dpi=dpi, metadata={"Software": None})

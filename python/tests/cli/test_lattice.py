@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -25,34 +24,18 @@ def arguments(folder: Path) -> list[object]:
     return ["lattice", "model.yaml", "-o", "out/lattice", "--grid", "0.2"]
 
 
-def test_lattice_writes_primitives_table_and_picture(slipwise: Slipwise, arguments: list[object]) -> None:
-    pytest.importorskip("matplotlib", reason="the picture is drawn by Matplotlib")
+def test_lattice_writes_primitives_and_table(slipwise: Slipwise, arguments: list[object]) -> None:
     result = slipwise(*arguments)
     assert (result.code, result.err) == (0, "")
     content = json.loads(Path("out/lattice/lattice.json").read_text(encoding="utf-8"))
     assert content["lattice_metadata"]["num_of_headings"] == 16
     assert len(content["primitives"]) == content["lattice_metadata"]["number_of_trajectories"]
-    assert Path("out/lattice/curvature.png").read_bytes().startswith(b"\x89PNG")
     assert f"{len(content['primitives'])} primitives over 16 headings at 0.5 m/s" in result.out
 
 
-def test_without_matplotlib_all_but_the_picture_is_written_and_that_is_said(
-    slipwise: Slipwise, arguments: list[object], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    result = slipwise(*arguments)
-    assert (result.code, result.err) == (0, "")
-    assert sorted(path.name for path in Path("out/lattice").iterdir()) == ["curvature.csv", "lattice.json"]
-    assert "The picture was left out: it needs Matplotlib (pip install 'matplotlib>=3.8')." in result.out
-    refused = slipwise(*arguments, "--picture")
-    assert refused.code == 2
-    assert "pictures need Matplotlib, which is not installed" in refused.line
-
-
 def test_the_table_has_what_slip_leaves(slipwise: Slipwise, arguments: list[object]) -> None:
-    result = slipwise(*arguments, "--no-picture", "--json", "-")
+    result = slipwise(*arguments, "--json", "-")
     assert result.code == 0
-    assert not Path("out/lattice/curvature.png").exists()
     table = np.genfromtxt("out/lattice/curvature.csv", delimiter=",", names=True)
     assert table["held_curvature"] == pytest.approx(0.7 * table["told_curvature"], abs=1e-5)
     tightest = table["held_curvature"].max()
@@ -61,11 +44,11 @@ def test_the_table_has_what_slip_leaves(slipwise: Slipwise, arguments: list[obje
 
 def test_a_bad_verdict_is_refused_unless_forced(slipwise: Slipwise, arguments: list[object]) -> None:
     make_model(replace(SKIDDING, good=False, sentence="It does not beat doing nothing.")).save("model.yaml")
-    result = slipwise(*arguments, "--no-picture")
+    result = slipwise(*arguments)
     assert result.code == 1
     assert "NOT GOOD ENOUGH. It does not beat doing nothing." in result.out
     assert not Path("out").exists()
-    assert slipwise(*arguments, "--no-picture", "--force").code == 0
+    assert slipwise(*arguments, "--force").code == 0
 
 
 def test_a_lattice_that_cannot_be_is_refused(
@@ -79,7 +62,7 @@ def test_a_lattice_that_cannot_be_is_refused(
         (("--longest", "0.5"), "some headings have no primitive"),
     ]:
         with subtests.test(given=given, message=message):
-            result = slipwise(*arguments, "--no-picture", *given)
+            result = slipwise(*arguments, *given)
             assert result.code == 2
             assert message in result.line
             assert not Path("out/lattice/lattice.json").exists()

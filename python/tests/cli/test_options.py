@@ -67,6 +67,8 @@ def test_options_are_read_under_their_older_names_with_a_note(capsys: pytest.Cap
     notes = capsys.readouterr().err.splitlines()
     assert len(notes) == 7
     assert "note: live --vehicle is now --name" in notes
+    assert with_new_names(["plan", "--no-picture", "--json", "-"]) == ["plan", "--json", "-"]
+    assert "--no-picture is gone" in capsys.readouterr().err
     now = ["calibrate", "a.csv", "--vehicle", "husky", "--set", "estimator=iekf"]
     assert with_new_names(now) == now
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -30,10 +29,8 @@ def arguments(folder: Path) -> list[object]:
 def test_plan_draws_the_swept_path_and_writes_the_commands(
     slipwise: Slipwise, arguments: list[object]
 ) -> None:
-    pytest.importorskip("matplotlib", reason="the picture is drawn by Matplotlib")
     result = slipwise(*arguments, "--from", START, "--to", GOAL, "-o", "out/dock")
     assert (result.code, result.err) == (0, "")
-    assert Path("out/dock.png").read_bytes().startswith(b"\x89PNG")
     assert "swept by the robot" in Path("out/dock.html").read_text(encoding="utf-8")
     table = np.genfromtxt("out/dock.csv", delimiter=",", names=True)
     assert table.dtype.names == ("t", "cmd_v", "cmd_omega")
@@ -41,38 +38,21 @@ def test_plan_draws_the_swept_path_and_writes_the_commands(
     assert "The predicted end is" in result.out
 
 
-def test_plan_without_a_picture_needs_no_matplotlib_and_tells_machines(
-    slipwise: Slipwise, arguments: list[object]
-) -> None:
-    result = slipwise(*arguments, "--from", START, "--to", GOAL, "--no-picture", "--json", "-")
+def test_plan_tells_machines(slipwise: Slipwise, arguments: list[object]) -> None:
+    result = slipwise(*arguments, "--from", START, "--to", GOAL, "--json", "-")
     assert result.code == 0
     assert result.json["end"] == pytest.approx([5.0, 6.4, 0.1], abs=5e-3)
     assert result.json["legs"] == 1
-    assert not Path("plan.png").exists()
 
 
 def test_a_plan_on_a_grade_takes_slope_and_direction(slipwise: Slipwise, arguments: list[object]) -> None:
-    route = [*arguments, "--from", START, "--to", GOAL, "--no-picture", "--json", "-"]
+    route = [*arguments, "--from", START, "--to", GOAL, "--json", "-"]
     level, tilted = slipwise(*route), slipwise(*route, "--grade", "15,180")
     assert (level.code, tilted.code) == (0, 0)
     assert tilted.json["end"] == pytest.approx([5.0, 6.4, 0.1], abs=5e-3)
     # A way up a slope is longer than it looks from above.
     assert tilted.json["duration"] > 1.01 * level.json["duration"]
     assert slipwise(*route, "--grade", "15").line.startswith("'15' is not a grade (--grade)")
-
-
-def test_without_matplotlib_all_but_the_picture_is_written_and_that_is_said(
-    slipwise: Slipwise, arguments: list[object], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    result = slipwise(*arguments, "--from", START, "--to", GOAL)
-    assert (result.code, result.err) == (0, "")
-    assert sorted(path.name for path in Path().glob("plan.*")) == ["plan.csv", "plan.html"]
-    assert "The picture was left out: it needs Matplotlib (pip install 'matplotlib>=3.8')." in result.out
-    refused = slipwise(*arguments, "--from", START, "--to", GOAL, "--picture")
-    assert refused.code == 2
-    assert "pictures need Matplotlib, which is not installed" in refused.line
-    assert "pip install 'matplotlib" in refused.line
 
 
 @pytest.mark.parametrize(

@@ -123,7 +123,7 @@ DESTROYING = (
     "convert drive.csv -o new.csv --json drive.csv",
     "export m.yaml --to amcl -o m.yaml",
     "export m.yaml --to all -o config --json m.yaml",
-    "lattice m.yaml --json m.yaml --no-picture",
+    "lattice m.yaml --json m.yaml",
     "show m.yaml --json m.yaml",
     "score p.csv drive.csv --json p.csv",
     "score p.csv drive.csv --json drive.csv",

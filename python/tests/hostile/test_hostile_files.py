@@ -142,7 +142,7 @@ def test_stamps_in_another_unit_are_named_by_every_verb(
 def fitting(path: Path, shared: Path) -> tuple[object, ...]:
     """Return the command that such a file is given to."""
     if path.name.startswith("map"):
-        route = ("--from=0,0,0", "--to", "2,0,0", "--radius", "0.2", "--no-picture")
+        route = ("--from=0,0,0", "--to", "2,0,0", "--radius", "0.2")
         return ("plan", "--model", shared / "m_wheel.yaml", "--map", path, *route)
     if path.name.startswith(("model", "m_")):
         return ("export", path, "--to", "all", "-o", "out")

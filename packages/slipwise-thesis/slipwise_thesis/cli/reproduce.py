@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from slipwise.cli.options import Folder, Json, Runs, optional
-from slipwise.cli.pictures import missing_picture
 
 if TYPE_CHECKING:
     from slipwise_thesis import ChapterResult
@@ -60,6 +59,7 @@ def reproduce(
     from slipwise.cli.run_folder import run_folder
     from slipwise.cli.tables import show_killed_runs
     from slipwise.cli.writable import refuse_unwritable
+    from slipwise.reporting.png_picture import ADVICE, can_draw
     from slipwise_thesis import reproduce as make_again
     from slipwise_thesis import write_reproduction
     from slipwise_thesis.chapters import FixturePlan, chosen_chapters
@@ -75,8 +75,8 @@ def reproduce(
         with place as folder:
             made = make_again(FixturePlan(seed, data), chapters=chapters, progress=update)
             files = write_reproduction(folder, made)
-            left_out = missing_picture(None, "The Markdown with its pictures")
-            notes = [left_out] if left_out else []
+            missing = f"The Markdown with its pictures was left out: it needs Matplotlib ({ADVICE})."
+            notes = [] if can_draw() else [missing]
             out.document(_document(made, files, seed) | {"notes": notes})
     for note in notes:
         out.line(note)
