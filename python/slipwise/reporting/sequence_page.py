@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of a sequence of logs: surfaces along time, visits, slip by place, and what is remembered."""
+"""The page of a sequence of logs: surfaces along time, visits, and what is remembered."""
 
 from __future__ import annotations
 
@@ -17,12 +17,10 @@ from slipwise.reporting.ground_strip import GroundMark, GroundStrip, strip_html
 from slipwise.reporting.markup import missing, number, paragraph, table
 from slipwise.reporting.named_surfaces import named_surfaces
 from slipwise.reporting.page import Part, page_of
-from slipwise.reporting.sections.ground import bank_table, maps_html
-from slipwise.reporting.slip_place_map import place_maps
+from slipwise.reporting.sections.ground import bank_table
 from slipwise.reporting.timeline import Timeline
 
 Floats = NDArray[np.float64]
-_MOST_MAPS = 6
 
 
 def write_sequence_page(
@@ -65,11 +63,6 @@ def sequence_page(logs: Sequence[Log], sequence: SequenceEvaluation, *, title: s
             "Each visit",
             f"Mean errors of `{REMEMBERING}` at the longest horizon, held out, beside no slip at all.",
             _visits(sequence),
-        ),
-        Part(
-            "Slip by place",
-            "What the model did not expect where the path runs over the same ground.",
-            _maps(logs, sequence),
         ),
         Part("How to make this again", "The command line.", paragraph(made)),
     )
@@ -181,14 +174,3 @@ def _visits(sequence: SequenceEvaluation) -> str:
         for visit in sequence.visits()
     ]
     return table(head, rows)
-
-
-def _maps(logs: Sequence[Log], sequence: SequenceEvaluation) -> str:
-    found = []
-    for place, (name, log, evaluation) in enumerate(
-        zip(sequence.names, logs, sequence.evaluations, strict=True)
-    ):
-        horizon = min(evaluation.horizons)
-        own = (p for p in evaluation.predictions if p.method == REMEMBERING and p.horizon == horizon)
-        found += place_maps(log, next(own, None), key=f"place-{place}", name=name)
-    return maps_html([figure.html() for figure in found[:_MOST_MAPS]])

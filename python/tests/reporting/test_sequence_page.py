@@ -41,12 +41,11 @@ def test_the_strip_names_each_surface_as_the_bank_does(page: str) -> None:
     assert any("surface 1 recalled" in text for text in data[-1]["text"])
 
 
-def test_a_reader_finds_surfaces_visits_and_places(page: str) -> None:
+def test_a_reader_finds_surfaces_and_visits(page: str) -> None:
     assert headings_of(page) == [
         "Which ground the robot was on",
         "The surfaces that are remembered",
         "Each visit",
-        "Slip by place",
         "How to make this again",
     ]
     assert "&lt;0&gt;.csv" in page

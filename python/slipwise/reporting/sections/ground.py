@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ground along the drive: surfaces and changes found, slip by place, and the surfaces remembered."""
+"""The ground along the drive: surfaces and changes found, and the surfaces remembered."""
 
 from __future__ import annotations
 
@@ -12,48 +12,22 @@ from slipwise.calibration.result import History
 from slipwise.models.schema import SurfaceSection
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.ground_strip import UNNAMED, GroundStrip, strip_html
-from slipwise.reporting.markup import grid, missing, paragraph, table
+from slipwise.reporting.markup import missing, paragraph, table
 from slipwise.reporting.named_surfaces import named_surfaces
-from slipwise.reporting.slip_place_map import place_maps
 from slipwise.reporting.timeline import Timeline
-
-PLACES = (
-    "Slip by place: where the way was longer (blue) or shorter (red) than predicted, as a part of what was "
-    "driven; the larger a square, the surer."
-)
 
 
 class GroundSection:
     """Did the ground change, and where?"""
 
     title = "The ground along the drive"
-    explanation = (
-        "Which stretches the model took for which ground, where it found a change, and what it did not "
-        "expect at each place."
-    )
+    explanation = "Which stretches the model took for which ground, and where it found a change."
 
     def html(self, contents: Contents) -> str:
-        """Return the strip, the maps of slip by place and the table of surfaces, each where there is one."""
-        history = contents.calibration.history
-        horizon = min((part.horizon for part in contents.evaluation.predictions), default=None)
-        part = contents.predictions(contents.learned_method, horizon)
-        maps = place_maps(contents.log, part, key="place")
+        """Return the strip and the table of surfaces, each where there is one."""
         surfaces = contents.calibration.model.content.surfaces
         rows = bank_table(surfaces) if surfaces else ""
-        figures = [figure.html() for figure in maps]
-        if not figures:
-            return _strip(contents, history) + maps_html(figures) + rows
-        beside = f'<div class="double">{_strip(contents, history)}</div>'
-        return maps_html([beside, *figures]) + rows
-
-
-def maps_html(figures: list[str]) -> str:
-    """Return maps side by side, or why there is none."""
-    if not figures:
-        return missing(
-            "The path does not run over the same ground again, so there is no map of slip by place."
-        )
-    return paragraph(PLACES, kind="explanation") + grid(figures)
+        return _strip(contents, contents.calibration.history) + rows
 
 
 def bank_table(surfaces: Iterable[SurfaceSummary | SurfaceSection]) -> str:
