@@ -78,7 +78,10 @@ if __name__ == "__main__":
     learned = learn_dynamics(BOAT, *simulated_drive())
     print(learned)
     for parameter, truth in zip(learned.parameters, TRUTH, strict=True):
+        assert parameter.identified, parameter.name
         assert abs(parameter.value - truth) < 3.0 * parameter.std, parameter.name
+    assert learned.scores[-1].ratio < 0.2  # of the error after 5 s to that of the values given
+    assert learned.scores[-1].nis < 2.0
     ahead = learned.predict([[0.0, 1.0, 0.2]], [1.0, 2.0, 5.0])  # hard to starboard
     for t, state, spread in zip(ahead.t, ahead.states, ahead.covariance, strict=True):
         std = np.sqrt(np.diag(spread))

@@ -42,18 +42,6 @@ def test_a_log_is_replayed_into_the_model_that_calibrate_writes(
     assert live.read_bytes() == log.read_bytes()
 
 
-def test_a_log_of_hills_is_replayed_with_the_terms_that_calibrate_tries(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    hills, live, log = tmp_path / "hills.csv", tmp_path / "live.yaml", tmp_path / "calibrate.yaml"
-    sw.save_log(hilly_log(1, Hills(seconds=60.0)), hills)
-    monkeypatch.chdir(tmp_path)
-    assert run(["live", "--replay", str(hills), "--rate", "0", "--quiet", "-o", str(live)]) == 0
-    assert run(["calibrate", str(hills), "--no-report", "-o", str(log)]) in (0, 1)
-    assert live.read_bytes() == log.read_bytes()
-    assert "gy" in live.read_text(encoding="utf-8")
-
-
 def test_with_a_memory_a_log_is_replayed_into_the_model_that_calibrate_writes_with_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -159,7 +147,9 @@ def test_lines_on_a_pipe_are_answered_with_lines(drive: Path) -> None:
 
 def test_settings_stand_in_a_file_and_the_command_line_goes_before_it(drive: Path, tmp_path: Path) -> None:
     settings = tmp_path / "live.toml"
-    settings.write_text(f'[live]\nname = "from-file"\ncache = "{tmp_path}/cache"\ninput = "wheel"\n')
+    settings.write_text(
+        f'basis = "edd-2"\n[live]\nname = "from-file"\ncache = "{tmp_path}/cache"\ninput = "wheel"\n'
+    )
     given = ["live", "--replay", str(drive), "--rate", "0", "--settings", str(settings), "--quiet"]
     assert run(given) == 0
     assert run([*given, "--name", "from-line"]) == 0

@@ -11,11 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import typer
 from python.tests.docs.pages import PAGES, ROOT, blocks, name_of
+from typer.core import TyperGroup
 
 import slipwise as sw
 from slipwise.calibration.calibrate_sequence import calibrate_sequence
 from slipwise.calibration.learned_sequence import SequenceOptions
+from slipwise.cli.main import app, with_ports
 
 WITH_PYTHON = [page for page in PAGES if blocks(page, "python")]
 COMMAND = re.compile(r"^(?:\.venv/bin/)?slipwise .*")
@@ -69,14 +72,10 @@ def command_lines() -> list[tuple[str, str]]:
 
 
 def test_a_command_line_is_understood(subtests: pytest.Subtests) -> None:
+    whole: Any = typer.main.get_command(app)
     for page, line in command_lines():
         with subtests.test(page=page, line=line):
-            import typer
-            from typer.core import TyperGroup
-
-            from slipwise.cli.main import app, with_ports
-
-            command: Any = typer.main.get_command(app)
+            command = whole
             words = with_ports(shlex.split(line, comments=True)[1:])
             while isinstance(command, TyperGroup):  # `slipwise terrain train` is a command of a command
                 assert words[0] in command.commands, f"{page}: no command {words[0]}"

@@ -5,10 +5,7 @@ from __future__ import annotations
 
 import gzip
 import os
-import resource
 import struct
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -18,30 +15,21 @@ import pyarrow.parquet as pq
 import pytest
 from cli.conftest import Columns, Result, left_in, write_csv
 from sample_models import make_model, named
+from warm_process import run_forked
 
 from slipwise.logs.unpacking import _zstd
 
 MEMORY = 2 << 30  # bytes of address space
-SECONDS = 60.0
+SECONDS = 60
 MAP = "image: {image}\nresolution: 0.25\norigin: [-5.0, -5.0, 0.0]\nnegate: 0\nfree_thresh: 0.196\n"
 ENDINGS = (".csv", ".mcap", ".db3", ".bag", ".parquet")
 
 
-def bounded(folder: Path, *arguments: object, seconds: float = SECONDS) -> Result:
+def bounded(folder: Path, *arguments: object, seconds: int = SECONDS) -> Result:
     """Run a command within 2 GiB and a minute; nothing but an answer or one plain line may come of it."""
-    command = [sys.executable, "-m", "slipwise", *map(str, arguments)]
     before = left_in(folder)
-    done = subprocess.run(
-        command,
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=seconds,
-        check=False,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY)),
-        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
-    )
-    result = Result(done.returncode, done.stdout, done.stderr)
+    done = run_forked(arguments, folder, seconds=seconds, memory=MEMORY)
+    result = Result(done.code, done.out, done.err)
     assert result.code in (0, 1, 2), result
     assert "Traceback" not in result.out + result.err
     assert "fault of slipwise" not in result.err

@@ -80,8 +80,8 @@ QUICK = ("omega in deg/s", "heading jumps by 180")
 
 
 @cache
-def sound() -> Log:
-    return sound_log(DRIVE)
+def sound(seconds: float = DRIVE.seconds) -> Log:
+    return sound_log(replace(DRIVE, seconds=seconds))
 
 
 def lived(log: Log, folder: Path, input_name: str = "wheel", **table: object) -> tuple[Built, Scripted]:
@@ -191,8 +191,7 @@ LATER: dict[str, Callable[[Log], Log]] = {
 def test_what_a_long_good_drive_handed_on_is_withdrawn_within_two_minutes_and_stays_so(
     name: str, tmp_path: Path
 ) -> None:
-    log = sound_log(replace(DRIVE, seconds=LONG))
-    built, transport = lived(since(log, LATER[name], LATE), tmp_path)
+    built, transport = lived(since(sound(LONG), LATER[name], LATE), tmp_path)
     assert faults_of(built, transport, tmp_path) == []
     withdrawn = [t for t, text in built.said.log() if "are withdrawn" in text]
     assert len(withdrawn) == 1

@@ -64,24 +64,29 @@ class MovingLearner:
         self._pushed += 1
 
 
-def replayed(
-    path: Path, input_name: str, log: Log, horizons: tuple[float, ...]
-) -> tuple[_core.MotionLearner, list[str]]:
-    """Push a file's rows, asking for what `evaluate` predicts; return the learner, and what differs."""
+def evaluated(log: Log, input_name: str, horizons: tuple[float, ...]) -> Sequence[Predictions]:
+    """What `evaluate` predicts."""
     options = EvaluationOptions(horizons=horizons, methods=("auto",))
-    result = evaluate(log, input=input_name, options=options)
+    return evaluate(log, input=input_name, options=options).predictions
+
+
+def replayed(
+    path: Path, input_name: str, log: Log, expected: Sequence[Predictions]
+) -> tuple[_core.MotionLearner, list[str]]:
+    """Push a file's rows, asking for what is expected; return the learner, and what differs."""
+    horizons = [p.horizon for p in expected]
     learner, compared, differing = MovingLearner(log, input_name, horizons, path), 0, list[str]()
     names = {run.name: k for k, run in enumerate(log.runs)}
     for run in read_runs(path):
         learner.now.start_run()
         at = {
             (p.t_start[i], k): i
-            for k, p in enumerate(result.predictions)
+            for k, p in enumerate(expected)
             for i in np.flatnonzero(p.run == names[run.name]).tolist()
         }
         for place, item in enumerate(run.items):
             learner.push(item)
-            for k, p in enumerate(result.predictions):
+            for k, p in enumerate(expected):
                 i = at.get((item[1][0], k)) if item[0] == "pose" else None
                 if i is not None:
                     end = float(p.t_end[i])
@@ -90,7 +95,7 @@ def replayed(
                     path_ahead = learner.now.predict(ahead, seconds, p.horizon)
                     compared += 1
                     differing += difference(p, i, path_ahead)
-    assert compared == sum(len(p) for p in result.predictions)
+    assert compared == sum(len(p) for p in expected)
     assert compared > 0
     return learner.now, differing
 
@@ -133,32 +138,33 @@ def same_model(
     assert content.range.speed + content.range.yaw_rate == list(learned.range)
 
 
-def check(folder: Path, name: str, input_name: str) -> None:
-    """The rows give the predictions of `evaluate` and the model of `calibrate`."""
+def check(folder: Path, name: str, input_name: str, *, evaluating: bool) -> None:
+    """The rows give the model and the predictions of `calibrate`, or those of `evaluate`."""
     path = folder / f"{name}.csv.gz"
     log = open_log(path)
-    learner, differing = replayed(path, input_name, log, JUDGING_HORIZONS)
+    learned = calibrate(log, input=input_name)
+    expected = evaluated(log, input_name, JUDGING_HORIZONS) if evaluating else learned.predictions
+    learner, differing = replayed(path, input_name, log, expected)
     assert not differing, f"{len(differing)} predictions differ: {differing[0]}"
     limits = learner.find_limits(Settings().vehicle.wheel_separation)
-    same_model(calibrate(log, input=input_name).model.content, learner.model(), limits)
+    same_model(learned.model.content, learner.model(), limits)
 
 
 @pytest.mark.parametrize(("name", "input_name"), cases(SHORT))
 def test_rows_pushed_one_by_one_give_what_evaluate_and_calibrate_write(
     real_log_dir: Path, name: str, input_name: str
 ) -> None:
-    check(real_log_dir, name, input_name)
+    check(real_log_dir, name, input_name, evaluating=True)
 
 
 def test_predictions_of_less_than_a_second_are_the_same_too(real_log_dir: Path) -> None:
     path = real_log_dir / "warthog/grass_7_29_14h8s51.csv.gz"
-    _, differing = replayed(path, "command", open_log(path), (0.5, 10.0))
+    log = open_log(path)
+    _, differing = replayed(path, "command", log, evaluated(log, "command", (0.5, 10.0)))
     assert not differing, differing[0]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "input_name"), cases(LONG))
-def test_rows_of_long_logs_give_what_evaluate_and_calibrate_write(
-    real_log_dir: Path, name: str, input_name: str
-) -> None:
-    check(real_log_dir, name, input_name)
+def test_rows_of_long_logs_give_what_calibrate_writes(real_log_dir: Path, name: str, input_name: str) -> None:
+    check(real_log_dir, name, input_name, evaluating=False)
