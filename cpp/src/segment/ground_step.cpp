@@ -49,6 +49,13 @@ std::array<Scalar, 2> gravity_on(const TiltAngles<Scalar>& tilt) {
   return {g * tilt.sin_pitch, -(g * tilt.cos_pitch * tilt.sin_roll)};
 }
 
+bool has_gravity(const Basis& basis) {
+  return std::ranges::any_of(basis.terms(), [](const Term& term) {
+    return std::ranges::any_of(
+        term.factors(), [](Quantity factor) { return factor == Quantity::GravityX || factor == Quantity::GravityY; });
+  });
+}
+
 /// Half a step of the drive further than `pose`.
 Pose2 middle_of(const ActuatorStep& step, const Pose2& pose) {
   return compose(pose, {0.5 * step.forward, 0.5 * step.left, 0.5 * step.turn});
@@ -129,6 +136,9 @@ std::size_t ground_pieces(double duration) {
 }
 
 void cut_for_ground(ActuatorSteps& drive) {
+  if (std::ranges::all_of(drive.steps, [](const ActuatorStep& step) { return ground_pieces(step.duration) == 1; })) {
+    return;
+  }
   ActuatorSteps cut;
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const ActuatorStep& step = drive.steps[k];
@@ -173,6 +183,9 @@ GroundStepLinearization linearize_ground_step(const Ground& ground, const Actuat
 
 Eigen::Matrix3d above_by_place(const GroundStepLinearization& ground, const ActuatorStep& step, const PathSlip& along,
                                const Eigen::Vector3d& body) {
+  if (!has_gravity(along.basis)) {
+    return ground.above_by(body);
+  }
   const auto by_gravity = slip_rate_by_gravity(along.basis, along.alpha, slip_state(step, along.gravity));
   return ground.above_by(body) + ground.step.level * by_gravity * ground.gravity_by * step.duration;
 }

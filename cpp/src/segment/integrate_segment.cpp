@@ -97,10 +97,13 @@ struct SensitivitySums {
   /// ground is evaluated at. `step` has a column for each actuator parameter.
   void add_ground(const Eigen::Matrix3d& by_place, const GroundStepLinearization& at, const Pose2& before,
                   const std::optional<LearnedColumns>& step) {
-    const Eigen::Matrix3d by_start = by_place * at.at_by_pose * transition(Pose2{}, before);
-    slip += (by_start * slip).eval();
+    if (!at.at_by_pose.isZero(0.0)) {  // as it is of a measured attitude
+      const Eigen::Matrix3d by_start = by_place * at.at_by_pose * transition(Pose2{}, before);
+      slip += (by_start * slip).eval();
+      actuator += (by_start * actuator).eval();
+    }
     if (step) {
-      actuator += (by_start * actuator + by_place * (at.at_by_step * *step + at.at_by_time * started)).eval();
+      actuator += by_place * (at.at_by_step * *step + at.at_by_time * started);
       started += step->row(0);
     }
   }

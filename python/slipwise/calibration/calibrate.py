@@ -105,6 +105,7 @@ def calibrate_by(
         (*log.notes, *(source.sentence() for source in learned.sources)),
         smooth_windows(learned.kept, windows, settings) if smooth else None,
         learned.predictions if settings.estimator == AVERAGE else (),
+        learned.baseline if settings.estimator == AVERAGE else (),
     )
 
 

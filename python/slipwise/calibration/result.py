@@ -102,6 +102,7 @@ class Calibration:
     notes: tuple[str, ...]
     smoothed: SmoothedCourse | None = None  # where it was asked for
     predictions: tuple[Predictions, ...] = ()  # those judged, of each horizon; what `evaluate` makes again
+    baseline: tuple[Predictions, ...] = ()  # of the kinematic baseline over the same stretches
 
     def __repr__(self) -> str:
         state = "good" if self.verdict.good else "not good enough"

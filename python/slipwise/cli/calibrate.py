@@ -88,7 +88,6 @@ def calibrate(
     from slipwise.cli.tables import show_killed_runs
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.files import write_text_whole
-    from slipwise.reporting.session import report_calibration
 
     out = Output(json)
     chosen = chosen_settings(settings, changes, basis) if settings or changes or basis or not memory else None
@@ -115,6 +114,8 @@ def calibrate(
             if calibration.smoothed is not None:
                 files["smoothed"] = calibration.smoothed.save(folder / "smoothed.csv")
             if not no_report:
+                from slipwise.reporting.session import report_calibration
+
                 files["report"] = report or folder / "report.html"
                 update("writing the report", 1.0)
                 calibration = report_calibration(

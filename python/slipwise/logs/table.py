@@ -62,7 +62,7 @@ class Table:
         column = self.arrow.column(name)
         advice = f"column {name} must hold {'seconds as numbers' if name == 't' else 'numbers'}"
         with _column_errors(f"not a number in column {name}", self.path, advice):
-            values = np.asarray(column.cast("float64", safe=False).to_numpy(), dtype=np.float64)
+            values = _floats(column.cast("float64", safe=False))
         finite = np.abs(values) < ABSURD  # false for NaN
         if finite.sum() < len(values) - column.null_count:
             wrong = np.asarray(column.is_valid().to_numpy(), dtype=bool) & ~finite
@@ -76,8 +76,8 @@ class Table:
         with _column_errors(f"not names in column {name}", self.path, "write each as UTF-8 text or a number"):
             column = self.arrow.column(name).combine_chunks()
             encoded = column if _is_dictionary(column) else column.dictionary_encode()
-            filled = encoded.indices.fill_null(-1)
-            codes = np.asarray(filled.to_numpy(zero_copy_only=False), dtype=np.int64)
+            numbers = _floats(encoded.indices.cast("float64"))
+            codes = np.where(np.isnan(numbers), -1, numbers).astype(np.int64)
             names = ["" if value is None else str(value) for value in encoded.dictionary.to_pylist()]
         if (codes < 0).any():
             codes, names = np.where(codes < 0, len(names), codes), [*names, ""]
@@ -242,6 +242,17 @@ def _column_errors(what: str, path: Path, advice: str) -> Iterator[None]:
         yield
     except (pa.ArrowException, ValueError, TypeError, KeyError, NotImplementedError, OverflowError) as error:
         raise LogError(what, where=str(path), advice=advice) from error
+
+
+def _floats(column: pa.Array | pa.ChunkedArray) -> Floats:
+    """Return numbers, NaN where there is none; `to_numpy` of Arrow would import pandas, which takes 0.3 s."""
+    import pyarrow as pa
+
+    whole = column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
+    if not len(whole):
+        return np.zeros(0)
+    tensor = pa.RecordBatch.from_arrays([whole], names=["values"]).to_tensor(null_to_nan=True)
+    return np.asarray(tensor.to_numpy()[:, 0], dtype=np.float64)
 
 
 def _named_column(error: Exception, header: list[str]) -> str:

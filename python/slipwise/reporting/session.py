@@ -47,7 +47,7 @@ def report_calibration(  # noqa: PLR0913 - what was learned from what, and how t
         settings=settings,
         options=EvaluationOptions(
             methods=tuple(dict.fromkeys((*BASELINES, *learned))),
-            made={calibration.method: calibration.predictions},
+            made={calibration.method: calibration.predictions, "none": calibration.baseline},
         ),
     )
     calibration = proposing(calibration, evaluation)
