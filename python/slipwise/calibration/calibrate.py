@@ -25,12 +25,15 @@ from slipwise.calibration.prepared_run import (
     frames_apart,
     has_wheels,
     prepare_run,
+    unused_runs,
+    used_sources,
 )
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.shortage import shortage_advice, silence
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
+from slipwise.calibration.unused_measurements import unused_measurements
 from slipwise.calibration.verdict import LogFacts
 from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import LogError, ModelError, SettingsError
@@ -101,8 +104,12 @@ def calibrate_by(
         model_of(content, log, found),
         judged.verdict,
         learned.history,
-        log.left_out + windows.left_out,
-        (*log.notes, *(source.sentence() for source in learned.sources)),
+        (*log.left_out, *unused_runs(log, input_name), *windows.left_out),
+        (
+            *log.notes,
+            *(source.sentence() for source in learned.sources),
+            *unused_measurements(log, settings, smooth=smooth),
+        ),
         smooth_windows(learned.kept, windows, settings) if smooth else None,
         learned.predictions if settings.estimator == AVERAGE else (),
         learned.baseline if settings.estimator == AVERAGE else (),
@@ -159,7 +166,10 @@ def judged_content(
     origin = ModelFacts(
         input_name=input_name,
         settings=settings,
-        logs=[schema.LogReference(path=source.path, sha256=source.sha256) for source in log.sources],
+        logs=[
+            schema.LogReference(path=source.path, sha256=source.sha256)
+            for source in used_sources(log, input_name)
+        ],
         range=_range(windows.drive),
         seconds=seconds,
         segments=segments,

@@ -18,7 +18,7 @@ from slipwise.calibration.calibrate import (
 from slipwise.calibration.learned_log import Keep
 from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions, learn_sequence
 from slipwise.calibration.learner import Progress
-from slipwise.calibration.prepared_run import PreparedRun, choose_input, prepare_run
+from slipwise.calibration.prepared_run import PreparedRun, choose_input, prepare_run, unused_runs
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
 from slipwise.calibration.sloping_ground import for_the_ground_of
@@ -88,7 +88,7 @@ def calibrate_sequence(
         model,
         judged.verdict,
         learned.history,
-        log.left_out + windows.left_out,
+        (*log.left_out, *unused_runs(log, input_name), *windows.left_out),
         log.notes,
         None,
         learned.predictions,

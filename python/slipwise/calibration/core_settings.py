@@ -76,6 +76,11 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         average.surfaces = surfaces
     hypotheses.average = average
     if car is not None and from_commands:
+        if gyro_alone:
+            raise SettingsError(
+                "throttle and steering cannot be learned from yaw rates alone, which do not show the speed",
+                advice="record poses or positions too, or measured speeds: --input wheel",
+            )
         stream.car = car
         _behind_curves(hypotheses, settings)
     core.stream, core.hypotheses = stream, hypotheses

@@ -14,13 +14,14 @@ from slipwise import _core
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.gyro import gyro_alone, gyro_rows
 from slipwise.logs.held import HeldSum
-from slipwise.logs.log import Inputs, LeftOut, Log, Run
+from slipwise.logs.log import Inputs, LeftOut, Log, Run, Source
 from slipwise.segments import WindowRules, cut_windows
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 INPUT_NAMES = ("command", "wheel")
+LEAST_MEASURED = 2  # poses or yaw rates of a run that is learned from
 OVERLAP = 1.0  # s; runs of one clock overlap by less, where files were split while messages were on the way
 
 
@@ -125,14 +126,51 @@ def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
     alone = gyro_alone(log.runs)
     for index, run in enumerate(log.runs):
         inputs = run.commands if input_name == "command" else run.wheels
-        measured = len(gyro_rows(run)) if alone else len(run.poses)
-        if inputs is None or len(inputs) == 0 or measured < 2:
+        if inputs is None or _lacking(run, input_name, alone=alone):
             continue
         wheels = run.wheels if input_name == "command" else None
         drive.append(PreparedRun(index, run, inputs, wheels, input_name))
     if not drive:
         raise LogError(_nothing_to_use(log, input_name), where=_where(log), advice=_advice(log, input_name))
     return tuple(_in_time(drive))
+
+
+def unused_runs(log: Log, input_name: str) -> tuple[LeftOut, ...]:
+    """Count the runs of which `prepare_run` can make nothing, beside others of which it can."""
+    lacking = _all_lacking(log, input_name)
+    return tuple(
+        LeftOut(
+            f"runs without {what}", lacking.count(what), _place(log.runs[lacking.index(what)]), "unused-run"
+        )
+        for what in dict.fromkeys(filter(None, lacking))
+    )
+
+
+def used_sources(log: Log, input_name: str) -> tuple[Source, ...]:
+    """Return the files that `prepare_run` uses something of."""
+    lacking = _all_lacking(log, input_name)
+    used = {file for run, lack in zip(log.runs, lacking, strict=True) if not lack for file in run.files}
+    unused = {file for run in log.runs for file in run.files} - used
+    return tuple(source for source in log.sources if source.path not in unused)
+
+
+def _all_lacking(log: Log, input_name: str) -> list[str]:
+    alone = gyro_alone(log.runs)
+    return [_lacking(run, input_name, alone=alone) for run in log.runs]
+
+
+def _lacking(run: Run, input_name: str, *, alone: bool) -> str:
+    """Return what a run lacks to be learned from; empty where it has all."""
+    inputs = run.commands if input_name == "command" else run.wheels
+    if inputs is None or len(inputs) == 0:
+        return "commands" if input_name == "command" else "wheel speeds"
+    if (len(gyro_rows(run)) if alone else len(run.poses)) < LEAST_MEASURED:
+        return "yaw rates" if alone else "poses"
+    return ""
+
+
+def _place(run: Run) -> str:
+    return f"run {run.name}" + (f" of {', '.join(run.files)}" if run.files else "")
 
 
 def _in_time(drive: list[PreparedRun]) -> list[PreparedRun]:

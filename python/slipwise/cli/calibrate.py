@@ -151,6 +151,7 @@ def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dic
         | {"files": files}
         | calibration_part(calibration)
         | log_part(log, calibration.left_out)
+        | {"notes": list(calibration.notes)}
     )
 
 

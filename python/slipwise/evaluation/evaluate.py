@@ -11,7 +11,13 @@ import numpy as np
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
 from slipwise.calibration.learned_sequence import SequenceOptions
 from slipwise.calibration.predictions import Predictions
-from slipwise.calibration.prepared_run import WindowSet, choose_input, collect_windows, prepare_run
+from slipwise.calibration.prepared_run import (
+    WindowSet,
+    choose_input,
+    collect_windows,
+    prepare_run,
+    unused_runs,
+)
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.errors import LogError, SettingsError
@@ -81,7 +87,7 @@ def evaluate(
         scores=scores_of(predictions, _baseline(predictions, contest), contest.targets),
         predictions=tuple(predictions),
         runs=tuple(run.name for run in log.runs),
-        left_out=log.left_out + contest.targets[-1].left_out,
+        left_out=(*log.left_out, *unused_runs(log, input_name), *contest.targets[-1].left_out),
         notes=log.notes + notes,
         contradictions=contradictions(
             log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw

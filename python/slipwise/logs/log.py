@@ -119,6 +119,7 @@ class Run:
     extra: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # rows of a tidy log, with their "t"
     others: Mapping[str, Poses] = field(default_factory=dict)  # of further sources, by name
     source: str = ""  # name of the first source, where there are several
+    files: tuple[str, ...] = ()  # that it comes from: paths of sources of the log
 
     def __repr__(self) -> str:
         return f"<Run {self.name!r}: {', '.join(self._parts())}>"

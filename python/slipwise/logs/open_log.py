@@ -156,10 +156,11 @@ def _completed(log: Log, options: LogOptions) -> Log:
 
 
 def _named(log: Log, file: Path, path: Path) -> Log:
-    """Name the path that was given, not the copy of what came through it."""
-    if file == path:
-        return log
-    return replace(log, sources=tuple(replace(source, path=shown(path)) for source in log.sources))
+    """Name the path that was given, not the copy of what came through it; each run knows its files."""
+    if file != path:
+        log = replace(log, sources=tuple(replace(source, path=shown(path)) for source in log.sources))
+    files = tuple(source.path for source in log.sources)
+    return replace(log, runs=tuple(replace(run, files=files) for run in log.runs))
 
 
 def joined(logs: list[Log]) -> Log:

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Uses in which the same measurements come another way: live, pushed by hand, converted."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+from matrix import drives
+from matrix.learned import Learned, verb
+from matrix.simulator import held_commands, in_space, seen_from_start
+
+import slipwise as sw
+from slipwise.calibration.prepared_run import prepare_run
+from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.live.replay import samples_of
+from slipwise.live.samples import Command, Gyro, Pose, Sample, Wheels
+from slipwise.logs import Log
+from slipwise.logs.gyro import gyro_alone
+from slipwise.logs.log import has_course
+from slipwise.models import Model, load_model
+from slipwise.segments import source_names
+
+
+def same(model: Model, other: Model, within: float) -> None:
+    """Hold two models to be one: the same parameters within some standard deviations, the same verdict."""
+    names, others = ([p.name for p in each.content.parameters] for each in (model, other))
+    assert names == others, f"parameters are {others}, not {names}"
+    if len(names):
+        off = np.abs(model.mean - other.mean) / np.sqrt(np.diag(model.covariance))
+        k = int(np.argmax(off))
+        assert off[k] <= within, f"{names[k]} is {off[k]:.2g} standard deviations off"
+    assert model.verdict.good == other.verdict.good, other.verdict.sentence
+
+
+@contextmanager
+def read_from(data: bytes) -> Iterator[None]:
+    """Let standard input hold these bytes."""
+    before = sys.stdin
+    sys.stdin = SimpleNamespace(buffer=io.BytesIO(data))  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        sys.stdin = before
+
+
+def replay(learned: Learned) -> None:
+    """A live node that the log is replayed through learns the bytes of `calibrate`."""
+    live = learned.folder / "live.yaml"
+    learned.calibration  # noqa: B018 - learned once
+    verb(
+        *("live", "--replay", learned.log, "--rate", "0", "--quiet", "-o", live),
+        *(*learned.live, *learned.common),
+    )
+    assert live.read_bytes() == learned.path.read_bytes()
+
+
+def lines(learned: Learned) -> None:
+    """The same log as lines on standard input teaches the same, and what is valid is published."""
+    live, results = learned.folder / "lines.yaml", learned.folder / "results.jsonl"
+    learned.calibration  # noqa: B018 - learned once
+    with read_from(learned.log.read_bytes()):
+        verb(
+            *("live", "--transport", "stdin", "--results", results, "-o", live),
+            *(*learned.live, *learned.common),
+            *(text for each in learned.situation.live for text in ("--set", each)),
+        )
+    same(learned.model, sw.load_model(live), 1e-6)
+    published = [json.loads(line) for line in results.read_text(encoding="utf-8").splitlines()]
+    models = [each["model"].splitlines()[0] for each in published if "model" in each]
+    assert models, "no model was published"
+    if learned.model.verdict.good:
+        assert any("newest" in each or "valid" in each for each in models), models[-1]
+
+
+@cache
+def learner_of(learned: Learned) -> sw.MotionLearner:
+    """Push all measurements of the log by hand, with the learner saved and loaded between."""
+    log = sw.open_log(learned.log, options=learned.options)
+    (run,) = prepare_run(log, learned.situation.learns)
+    samples = list(samples_of(run))
+    learner = learner_for(learned, log)
+    if learned.situation.before is not None:
+        learner.begin_with(load_model(learned.begins[1]), wheels=True)
+        learner.start_drive(
+            run.run.name, label=str(run.run.extra["terrain"][0]) if "terrain" in run.run.extra else ""
+        )
+    else:
+        learner.start_run(run.run.name)
+    for k, sample in enumerate(samples):
+        push(learner, sample)
+        if k == len(samples) // 2:
+            learner = sw.MotionLearner.load(learner.save())
+    learner.know_log(log)
+    return learner
+
+
+def pushed(learned: Learned) -> None:
+    """Measurements that are pushed by hand, with the learner saved and loaded between, teach the same."""
+    log = sw.open_log(learned.log, options=learned.options)
+    same(learned.model, learner_of(learned).judged_model(log=log)[0], 1e-9)
+
+
+def ahead(learned: Learned) -> None:
+    """What a learner predicts from its last measurement on is where the true robot goes from there."""
+    situation = learned.situation
+    told = held_commands(situation.ranges, situation.seconds, 1)
+    before = np.column_stack((np.arange(len(told)) * 0.05, told))
+    more = situation.manoeuvre
+    more[:, 0] += situation.seconds
+    path = learner_of(learned).predict(situation.rows(more), horizon=drives.SECONDS)
+    driven = situation.driven(np.vstack((before, more)), situation.seconds + drives.SECONDS)
+    through = driven.pose[driven.at(np.array([path.start, path.start + drives.SECONDS]))]
+    drives.close(
+        learned, path.poses[-1], seen_from_start(in_space(situation.robot, through)[:, [0, 1, 5]])[-1]
+    )
+
+
+def learner_for(learned: Learned, log: Log) -> sw.MotionLearner:
+    """Return a learner that is told what will come."""
+    return sw.MotionLearner(
+        learned.situation.learns,
+        for_the_ground_of(log, learned.chosen),
+        positions=has_course(log.runs),
+        sources=source_names(log.runs),
+        gyro_alone=gyro_alone(log.runs),
+        remember=learned.situation.before is not None,
+    )
+
+
+def push(learner: sw.MotionLearner, sample: Sample) -> None:
+    """Push one sample as a robot's program would."""
+    if isinstance(sample, Command):
+        learner.push_command(sample.t, sample.v, sample.omega, sample.vy)
+    elif isinstance(sample, Wheels):
+        learner.push_wheels(sample.t, sample.v, sample.omega, sample.vy)
+    elif isinstance(sample, Gyro):
+        learner.push_gyro(sample.t, sample.rate)
+    elif isinstance(sample, Pose):
+        if sample.roll is not None and sample.pitch is not None:
+            learner.push_attitude(sample.t, sample.roll, sample.pitch)
+        kept = {"frame": int(sample.frame or 0), "source": sample.source, "fix": sample.fix}
+        if np.isnan(sample.yaw):
+            learner.push_position(sample.t, sample.x, sample.y, sample.std_xy, **kept)
+        else:
+            learner.push_pose(sample.t, sample.x, sample.y, sample.yaw, sample.std_xy, sample.std_yaw, **kept)
+
+
+def converted(learned: Learned, ending: str, within: float) -> None:
+    """Convert the log, learn it again, and hold the models to be one."""
+    path = learned.folder / f"converted.{ending}"
+    verb("convert", learned.log, "-o", path, *learned.reading)
+    learned.calibration  # noqa: B018 - learned once
+    learned.calibrated(path, f"model-{ending}")
+    same(learned.model, sw.load_model(learned.folder / f"model-{ending}.yaml"), within)
+
+
+def parquet(learned: Learned) -> None:
+    """What is learned of the log as Parquet is what is learned of the log."""
+    converted(learned, "parquet", 1e-6)
+
+
+def mcap(learned: Learned) -> None:
+    """What is learned of the log as MCAP is what is learned of the log, but for stamps in ns."""
+    converted(learned, "mcap", 0.1)
+
+
+def several_logs(learned: Learned) -> None:
+    """A log without the input that is learned from is said to be left out, and provenance omits it."""
+    situation = learned.situation
+    other = "odo_v,odo_omega" if situation.learns == "command" else "cmd_v,cmd_omega"
+    lacking = learned.folder / "lacking.csv"
+    rows = "".join(f"{0.1 * k:.1f},0.5,0.0,{0.05 * k:.3f},0.0,0.0\n" for k in range(600))
+    lacking.write_text(f"t,{other},x,y,yaw\n{rows}", encoding="utf-8")
+    said = learned.calibrated(learned.log, "with-lacking", lacking, "--no-report")
+    document = json.dumps([said.document["notes"], said.document["left_out"]])
+    assert "lacking" in document, "nothing says that a log was left out"
+    model = sw.load_model(learned.folder / "with-lacking.yaml")
+    assert [each.path for each in model.content.provenance.logs] == [str(learned.log)]
