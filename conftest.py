@@ -30,9 +30,9 @@ def real_log_dir() -> Path:
     pytest.skip(reason)
 
 
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    """Open a browser; skip without one, or fail where SLIPWISE_REQUIRE_BROWSER=1 asks for it."""
+@pytest.fixture(scope="session")
+def opened_browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """Open a browser once; skip without one, or fail where SLIPWISE_REQUIRE_BROWSER=1 asks for it."""
     program = find_browser()
     if program is None:
         reason = "there is no Chromium on the PATH (Debian: apt install chromium)"
@@ -41,6 +41,15 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
         pytest.skip(reason)
     with Browser(program, tmp_path_factory.mktemp("profile")) as opened:
         yield opened
+
+
+@pytest.fixture(scope="module")
+def browser(opened_browser: Browser) -> Iterator[Browser]:
+    """Give a module the browser, and leave it without a page, without network and light."""
+    yield opened_browser
+    opened_browser.go("about:blank", width=1280)
+    opened_browser.prefer("light")
+    opened_browser.connect(False)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -6,6 +6,7 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -20,9 +21,14 @@ from slipwise.logs.log import Log
 Row = tuple[float, int, tuple[float, ...]]  # its stamp, the stream, what is pushed
 
 
+@cache
+def drive() -> Log:
+    return simulated_log(Drive(seconds=60.0, seed=4))
+
+
 @pytest.fixture(scope="module")
 def log() -> Log:
-    return simulated_log(Drive(seconds=60.0, seed=4))
+    return drive()
 
 
 def rows_of(log: Log) -> list[Row]:
@@ -39,18 +45,22 @@ def rows_of(log: Log) -> list[Row]:
     return sorted(found)
 
 
-def pushed(log: Log, input_name: str) -> sw.MotionLearner:
+@cache
+def saved_after(input_name: str) -> bytes:
+    """A learner of the whole drive, as it is saved."""
     learner = sw.MotionLearner(input=input_name)
     learner.start_run("monday")
-    push = (learner.push_command, learner.push_wheels, learner.push_pose)
-    for _, kind, row in rows_of(log):
-        push[kind](*row)
-    return learner
+    push_rows(learner, rows_of(drive()))
+    return learner.save()
+
+
+def pushed(input_name: str) -> sw.MotionLearner:
+    return sw.MotionLearner.load(saved_after(input_name))
 
 
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 def test_what_is_pushed_is_what_calibrate_learns(log: Log, input_name: str) -> None:
-    model, learned = pushed(log, input_name).model(), sw.calibrate(log, input=input_name).model
+    model, learned = pushed(input_name).model(), sw.calibrate(log, input=input_name).model
     assert model.content.parameters == learned.content.parameters
     assert model.content.covariance == learned.content.covariance
     assert model.content.noise == learned.content.noise
@@ -61,7 +71,7 @@ def test_what_is_pushed_is_what_calibrate_learns(log: Log, input_name: str) -> N
 
 
 def test_a_path_starts_at_the_newest_measurement_and_says_how_sure_it_is(log: Log) -> None:
-    learner = pushed(log, "wheel")
+    learner = pushed("wheel")
     path = learner.predict([(60.1, 0.5, 0.2)], horizon=5.0)
     assert path.start == pytest.approx(max(t for t, _, _ in rows_of(log)))
     assert path.t[-1] == path.start + 5.0
@@ -75,7 +85,7 @@ def test_a_path_starts_at_the_newest_measurement_and_says_how_sure_it_is(log: Lo
 
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 def test_each_pose_of_a_path_is_where_a_shorter_path_ends(log: Log, input_name: str) -> None:
-    learner, inputs = pushed(log, input_name), [(60.1, 0.5, 0.2), (61.53, 0.2, -0.4)]
+    learner, inputs = pushed(input_name), [(60.1, 0.5, 0.2), (61.53, 0.2, -0.4)]
     path = learner.predict(inputs, horizon=5.0)
     for i, t in enumerate(path.t):
         shorter = learner.predict(inputs, horizon=t - path.start)
@@ -115,12 +125,14 @@ def test_what_is_wrong_is_said_and_changes_nothing(log: Log) -> None:
     }
     assert all(event.run == "monday" for event in events)
     assert learner.events() == []
-    assert learner.model().content.covariance == pushed(log, "wheel").model().content.covariance
+    assert learner.model().content.covariance == pushed("wheel").model().content.covariance
 
 
 def test_forgetting_makes_slip_less_sure() -> None:
     slipping = Drive(seconds=60.0, seed=4, basis=_core.named_basis("edd-2"), alpha=(-0.1, -0.4))
-    learner = pushed(simulated_log(slipping), "wheel")
+    learner = sw.MotionLearner("wheel")
+    learner.start_run("monday")
+    push_rows(learner, rows_of(simulated_log(slipping)))
     before = learner.model()
     learner.forget(0.5)
     after = learner.model()

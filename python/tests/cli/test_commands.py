@@ -128,7 +128,7 @@ def test_smoothed_parameters_are_written_and_shown_where_asked_for(
 
 
 def test_json_on_stdout_is_all_that_is_printed(slipwise: Slipwise, drive_csv: Path) -> None:
-    result = slipwise("calibrate", drive_csv, "--no-report", "--json", "-")
+    result = slipwise("calibrate", drive_csv, "--basis", "edd-2", "--no-report", "--json", "-")
     assert result.err == ""
     assert result.json["verdict"]["good"] is True
     assert result.json["exit_code"] == result.code == 0
@@ -179,7 +179,7 @@ def test_evaluate_shows_every_method_at_every_horizon(slipwise: Slipwise, drive_
 
 
 def test_a_model_is_judged_on_another_drive(slipwise: Slipwise, folder: Path, drive_csv: Path) -> None:
-    slipwise("calibrate", drive_csv, "-o", "model.yaml", "--no-report")
+    slipwise("calibrate", drive_csv, "-o", "model.yaml", "--basis", "edd-2", "--no-report")
     own = slipwise("evaluate", drive_csv, "--model", "model.yaml", "--methods", "model")
     assert "learned from this very log" in own.out
     drive = Drive(seconds=60.0, seed=2, alpha=(-0.1, -0.3), basis=EDD_2)

@@ -24,8 +24,8 @@ STOPPED = "stopped by the user; no half-written file is left"
 
 @pytest.fixture
 def long_csv(folder: Path, columns: Columns) -> Path:
-    """An hour of driving: the same minute and a half over and over, each a frame of its own."""
-    times = 40
+    """Twenty-four minutes of driving: the same minute and a half over and over, each a frame of its own."""
+    times = 16
     tiled = {name: np.tile(values, times) for name, values in columns.items()}
     tiled["frame"] = np.repeat(np.arange(times, dtype=np.float64), len(columns["t"]))
     tiled["t"] += (columns["t"][-1] + 0.05) * tiled["frame"]

@@ -12,7 +12,7 @@ from sample_models import make_model, named
 from sample_slopes import Hills, hilly_log
 from scripted_node import SLIP, Scripted, driven, run_node
 
-from slipwise.calibration import Settings
+from slipwise.calibration import make_settings
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.prepared_run import prepare_run
@@ -93,7 +93,7 @@ def test_a_delay_of_seconds_is_real_where_stamps_were_compared_with_arrival(
     transport: type[Scripted],
 ) -> None:
     delivers = transport(driven(replace(SLIP, delay=1.5), "command"))
-    built = build_node(delivers, "command", Settings(), run="test")
+    built = build_node(delivers, "command", make_settings({"basis": "edd-2"}), run="test")
     built.node.run()
     assert built.learning.model is not None
     verdict = built.learning.model.content.verdict

@@ -29,7 +29,8 @@ from slipwise.models import load_model
 
 pytestmark = pytest.mark.slow
 
-RATE = 6.0  # times real time; streams may be late by half a second of stamps
+#: Times real time. Streams may be late by half a second of stamps: where the machine is busy, more slowly.
+RATES = (6.0, 2.0)
 ROS = {"ROS_DOMAIN_ID": str(DOMAIN), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
 
@@ -74,10 +75,10 @@ def without_origin(text: str) -> str:
     return "\n".join(line for line in text.splitlines() if "sha256" not in line and "logs:" not in line)
 
 
-def played(lines: Path, ros_python: Path, command: list[str]) -> dict[str, Any]:
+def played(lines: Path, ros_python: Path, command: list[str], rate: float = RATES[0]) -> dict[str, Any]:
     """Run the node while a real ROS 2 node plays; return what that one heard, and what the node said."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")} | ROS
-    player = [str(ros_python), str(HERE / "bag_player.py"), str(lines), str(RATE)]
+    player = [str(ros_python), str(HERE / "bag_player.py"), str(lines), str(rate)]
     with subprocess.Popen(
         command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as live:
@@ -105,10 +106,14 @@ def test_a_bag_played_by_a_real_node_gives_the_model_of_the_bag(
     bag: Path, ros_python: Path, tmp_path: Path, transport: str
 ) -> None:
     output = tmp_path / "live.yaml"
-    found = played(messages(bag, tmp_path / "lines"), ros_python, command_of(transport, ros_python, output))
+    lines, command = messages(bag, tmp_path / "lines"), command_of(transport, ros_python, output)
+    wanted = without_origin(sw.calibrate(sw.open_log(bag)).model.to_yaml())
+    for rate in RATES:
+        found = played(lines, ros_python, command, rate)
+        if without_origin(output.read_text()) == wanted:
+            break
+    assert without_origin(output.read_text()) == wanted
     assert "pose topic: /ground_truth/pose" in found["said"]
-    wanted = sw.calibrate(sw.open_log(bag)).model.to_yaml()
-    assert without_origin(output.read_text()) == without_origin(wanted)
     assert "slipwise" in found["nodes"]
     assert found["frame"]
     assert found["model"].startswith("# slipwise live, robot")
