@@ -39,7 +39,7 @@ void add_errors(Errors& errors, const std::string& learned, double slip, std::ui
       learner.cue_surface("");
     }
     learner.start_run();
-    push(learner, drive_on(slip, 100 + seed, kBefore, 2000.0));
+    push(learner, drive_on(slip, 100 + seed, static_cast<double>(count) + 10.0, 2000.0));
     learner.end_run();
     (cue ? errors.told : errors.alone) += mean_yaw_error(learner, before, count) / kSeeds;
   }
