@@ -24,7 +24,7 @@ from slipwise.logs import Log, LogOptions, Poses
 from slipwise.logs.time_span import cut_to_span
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE / "promises"), str(HERE.parent / "python" / "tests")]  # their simulations
+sys.path += [str(HERE / "promises"), str(HERE.parent / "python" / "tests")]  # their simulations
 
 Floats = NDArray[np.float64]
 Errors = tuple[float, float]  # of position, of heading
