@@ -70,7 +70,7 @@ def _rows(prior: str, knowledge: Knowledge) -> Pairs:
     judge = WorstPrediction(prediction_jacobians(knowledge, SPACE.grid(JUDGED), 2.0))
     options = ExcitationOptions(area=None, pause=0.0, minutes=0.7, levels=9)
     grid = SPACE.grid(JUDGED)
-    told = np.array([_told(knowledge, v, omega) for v, omega in grid.tolist()])
+    told = np.array([_told(knowledge, v, omega) for v, _, omega in grid.tolist()])
     start = prior_information(knowledge)
     designed = [_told(knowledge, m.v, m.omega) for m in design_drive(knowledge, SPACE, options).moves]
     v, omega = grid.T

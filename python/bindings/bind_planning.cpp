@@ -99,7 +99,9 @@ void bind_mppi_settings(nb::module_& m) {
       .def_rw("highest_speed", &MppiLimits::highest_speed)
       .def_rw("yaw_rate", &MppiLimits::yaw_rate)
       .def_rw("acceleration", &MppiLimits::acceleration)
-      .def_rw("yaw_acceleration", &MppiLimits::yaw_acceleration);
+      .def_rw("yaw_acceleration", &MppiLimits::yaw_acceleration)
+      .def_rw("sideways_speed", &MppiLimits::sideways_speed)
+      .def_rw("sideways_acceleration", &MppiLimits::sideways_acceleration);
   nb::class_<MppiCosts>(m, "MppiCosts", "What costs how much.")
       .def(nb::init<>())
       .def_rw("across", &MppiCosts::across)
@@ -116,6 +118,7 @@ void bind_mppi_settings(nb::module_& m) {
       .def_rw("period", &MppiSettings::period)
       .def_rw("speed_std", &MppiSettings::speed_std)
       .def_rw("yaw_rate_std", &MppiSettings::yaw_rate_std)
+      .def_rw("sideways_std", &MppiSettings::sideways_std)
       .def_rw("colour", &MppiSettings::colour)
       .def_rw("temperature", &MppiSettings::temperature)
       .def_rw("risk", &MppiSettings::risk)
@@ -127,10 +130,13 @@ void bind_mppi_settings(nb::module_& m) {
 template <int kColumns>
 using Rows = nb::ndarray<const double, nb::shape<-1, kColumns>, nb::c_contig, nb::device::cpu>;
 
-std::vector<DriveCommand> commands_of(const Rows<2>& rows) {
+/// Rows are (v, vy, omega).
+DriveCommand command_of(const double* row) { return {.v = row[0], .omega = row[2], .vy = row[1]}; }
+
+std::vector<DriveCommand> commands_of(const Rows<3>& rows) {
   std::vector<DriveCommand> commands;
   for (std::size_t i = 0; i < rows.shape(0); ++i) {
-    commands.push_back({.v = rows(i, 0), .omega = rows(i, 1)});
+    commands.push_back(command_of(&rows(i, 0)));
   }
   return commands;
 }
@@ -145,32 +151,37 @@ MppiReference reference_of(const Rows<3>& rows) {
   return reference;
 }
 
-/// Model, parameters, limits, the rise of the ground per metre along the axes of the poses' frame, and the slip ahead.
+/// Model, parameters, limits, the rise of the ground per metre along the axes of the poses' frame, the slip ahead, and
+/// whether it drives sideways.
 using Motions = std::vector<std::tuple<MotionModel, Eigen::VectorXd, std::optional<CommandLimits>,
-                                       std::array<double, 2>, std::optional<MixedAhead>>>;
+                                       std::array<double, 2>, std::optional<MixedAhead>, bool>>;
 
 std::vector<RolloutProgram> programs_of(const Motions& motions, double period) {
   std::vector<RolloutProgram> programs;
-  for (const auto& [model, parameters, limits, rise, ahead] : motions) {
+  for (const auto& [model, parameters, limits, rise, ahead, sideways] : motions) {
     programs.emplace_back(model, parameters,
                           RolloutSetting{.period = period,
                                          .limits = limits.value_or(CommandLimits{}),
                                          .rise_x = rise[0],
                                          .rise_y = rise[1],
-                                         .ahead = ahead ? ahead->ahead : SlipAhead{}});
+                                         .ahead = ahead ? ahead->ahead : SlipAhead{},
+                                         .sideways = sideways});
   }
   return programs;
 }
 
 void bind_mppi(nb::module_& m) {
   nb::class_<MppiResult>(m, "MppiResult", "The next command and the plan that it begins.")
-      .def_prop_ro("v", [](const MppiResult& result) { return result.command.v; })
-      .def_prop_ro("omega", [](const MppiResult& result) { return result.command.omega; })
+      .def_prop_ro("command",
+                   [](const MppiResult& result) {
+                     return Eigen::Vector3d(result.command.v, result.command.vy, result.command.omega);
+                   })
       .def_prop_ro("plan",
                    [](const MppiResult& result) {
-                     Eigen::MatrixX2d plan(static_cast<Eigen::Index>(result.plan.size()), 2);
+                     Eigen::MatrixX3d plan(static_cast<Eigen::Index>(result.plan.size()), 3);
                      for (std::size_t k = 0; k < result.plan.size(); ++k) {
-                       plan.row(static_cast<Eigen::Index>(k)) << result.plan[k].v, result.plan[k].omega;
+                       plan.row(static_cast<Eigen::Index>(k)) << result.plan[k].v, result.plan[k].vy,
+                           result.plan[k].omega;
                      }
                      return plan;
                    })
@@ -186,20 +197,23 @@ void bind_mppi(nb::module_& m) {
           "models"_a, "settings"_a, "car"_a.none())
       .def(
           "step",
-          [](Mppi& self, const Pose2& pose, std::pair<double, double> drive, const Rows<2>& past,
-             const Rows<3>& reference, const Costmap* map) {
-            const MppiState state{.start = {.pose = pose, .drive = {.v = drive.first, .omega = drive.second}},
+          [](Mppi& self, const Pose2& pose, const Eigen::Vector3d& drive, const Rows<3>& past, const Rows<3>& reference,
+             const Costmap* map) {
+            const MppiState state{.start = {.pose = pose, .drive = command_of(drive.data())},
                                   .past = commands_of(past)};
             return self.step(state, reference_of(reference), map);
           },
-          "pose"_a, "drive"_a, "past"_a, "reference"_a, "map"_a.none(), "One iteration from the last plan.")
+          "pose"_a, "drive"_a, "past"_a, "reference"_a, "map"_a.none(),
+          "One iteration from the last plan; drive and rows of the past are (v, vy, omega).")
       .def(
           "adopt",
           [](Mppi& self, const Motions& models, std::optional<CarCurves> car) {
             self.adopt(programs_of(models, self.settings().period), std::move(car));
           },
           "models"_a, "car"_a.none(), "Drives through other models from the next step on; the last plan stays.")
-      .def("reset", [](Mppi& self, double v, double omega) { self.reset({.v = v, .omega = omega}); }, "v"_a, "omega"_a);
+      .def(
+          "reset", [](Mppi& self, const Eigen::Vector3d& command) { self.reset(command_of(command.data())); },
+          "command"_a);
 }
 
 }  // namespace

@@ -25,14 +25,14 @@ namespace slipwise::bindings {
 namespace {
 
 template <typename Scalar>
-using Commands = nb::ndarray<const Scalar, nb::shape<-1, -1, 2>, nb::device::cpu>;
+using Commands = nb::ndarray<const Scalar, nb::ndim<3>, nb::device::cpu>;
 template <typename Scalar, std::size_t kDimensions>
 using Output = std::optional<nb::ndarray<Scalar, nb::ndim<kDimensions>, nb::c_contig, nb::device::cpu>>;
-using Starts = nb::ndarray<const double, nb::shape<-1, 5>, nb::c_contig, nb::device::cpu>;
-using Past = nb::ndarray<const double, nb::shape<-1, -1, 2>, nb::c_contig, nb::device::cpu>;
+using Starts = nb::ndarray<const double, nb::shape<-1, 6>, nb::c_contig, nb::device::cpu>;
+using Past = nb::ndarray<const double, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
 using Cells = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
-/// Where rollouts start: (x, y, theta, v, omega) per start, and the commands sent before.
+/// Where rollouts start: (x, y, theta, v, vy, omega) per start, and the commands (v, vy, omega) sent before.
 struct StartList {
   std::vector<RolloutStart> starts;
   std::vector<DriveCommand> past;
@@ -41,20 +41,27 @@ struct StartList {
 StartList start_list(const Starts& starts, const Past& past) {
   StartList list;
   for (std::size_t i = 0; i < starts.shape(0); ++i) {
-    const double* row = starts.data() + 5 * i;
-    list.starts.push_back({{row[0], row[1], row[2]}, {row[3], row[4]}});
+    const double* row = starts.data() + 6 * i;
+    list.starts.push_back({{row[0], row[1], row[2]}, {.v = row[3], .omega = row[5], .vy = row[4]}});
   }
   for (std::size_t i = 0; i < past.shape(0) * past.shape(1); ++i) {
-    list.past.push_back({past.data()[2 * i], past.data()[2 * i + 1]});
+    const double* row = past.data() + 3 * i;
+    list.past.push_back({.v = row[0], .omega = row[2], .vy = row[1]});
   }
   return list;
 }
 
+/// Commands are (v, omega), or (v, vy, omega) of a robot that drives sideways.
 template <typename Scalar>
 RolloutBatch<Scalar> batch_of(const Commands<Scalar>& commands, const StartList& list) {
+  if (commands.shape(2) != 2 && commands.shape(2) != 3) {
+    throw std::invalid_argument("commands are (v, omega) or (v, vy, omega)");
+  }
+  const auto last = static_cast<std::ptrdiff_t>(commands.shape(2)) - 1;
   return {.rollouts = commands.shape(0),
           .periods = commands.shape(1),
-          .commands = {commands.data(), commands.data() + commands.stride(2), commands.stride(0), commands.stride(1)},
+          .commands = {commands.data(), commands.data() + last * commands.stride(2), commands.stride(0),
+                       commands.stride(1), last == 2 ? commands.data() + commands.stride(2) : nullptr},
           .starts = list.starts,
           .past = list.past};
 }
@@ -83,14 +90,15 @@ InstructionLevel level_named(const std::string& name) {
 
 /// Without limits the commands pass as they are. `ground` is (gx, gy, rise_x, rise_y).
 RolloutSetting setting(double period, const std::array<double, 4>& ground, const CommandLimits* limits,
-                       const SlipAhead& ahead) {
+                       const SlipAhead& ahead, bool sideways) {
   return {.period = period,
           .gx = ground[0],
           .gy = ground[1],
           .limits = limits == nullptr ? CommandLimits{} : *limits,
           .rise_x = ground[2],
           .rise_y = ground[3],
-          .ahead = ahead};
+          .ahead = ahead,
+          .sideways = sideways};
 }
 
 template <typename Scalar>
@@ -120,7 +128,8 @@ void bind_batch(nb::module_& m) {
       },
       "program"_a, "commands"_a, "starts"_a, "path"_a.none(), "end"_a.none(), "map"_a.none(), "costs"_a.none(),
       "threads"_a, "level"_a, "gpu"_a.none(),
-      "Drives commands [N, K, 2]; fills path [3, K, N], end [3, N] and costs [3, N] (sum, highest, lowest). On the "
+      "Drives commands [N, K, 2 or 3]; fills path [3, K, N], end [3, N] and costs [3, N] (sum, highest, lowest). On "
+      "the "
       "processor, with these threads and instructions, where gpu is None.");
 }
 
@@ -131,18 +140,20 @@ void bind_uncertain(nb::module_& m) {
           [](UncertainModel* self, const MotionModel& model, const Eigen::VectorXd& parameters,
              const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale,
              double inflation, const DisturbanceModel& disturbance, const Eigen::VectorXd& prior_std, double period,
-             const std::array<double, 4>& ground, const CommandLimits* limits, const MixedAhead* ahead) {
+             const std::array<double, 4>& ground, const CommandLimits* limits, const MixedAhead* ahead, bool sideways) {
             model.check(parameters);
             check_square(covariance, model.size(), "the covariance of a model");
             check_size(prior_std, model.size(), "the prior of a model");
-            new (self) UncertainModel{model,
-                                      parameters,
-                                      {covariance, noise, scale, inflation, disturbance, prior_std,
-                                       ahead == nullptr ? std::vector<Eigen::MatrixXd>{} : ahead->directions},
-                                      setting(period, ground, limits, ahead == nullptr ? SlipAhead{} : ahead->ahead)};
+            new (self) UncertainModel{
+                model,
+                parameters,
+                {covariance, noise, scale, inflation, disturbance, prior_std,
+                 ahead == nullptr ? std::vector<Eigen::MatrixXd>{} : ahead->directions},
+                setting(period, ground, limits, ahead == nullptr ? SlipAhead{} : ahead->ahead, sideways)};
           },
           "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "inflation"_a, "disturbance"_a,
-          "prior_std"_a, "period"_a, "ground"_a, "limits"_a.none(), "ahead"_a.none(), nb::keep_alive<1, 2>());
+          "prior_std"_a, "period"_a, "ground"_a, "limits"_a.none(), "ahead"_a.none(), "sideways"_a,
+          nb::keep_alive<1, 2>());
   m.def(
       "rollout_covariance",
       [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts,
@@ -173,14 +184,15 @@ void bind_rollout(nb::module_& m) {
       .def(
           "__init__",
           [](RolloutProgram* self, const MotionModel& model, const Eigen::VectorXd& parameters, double period,
-             const std::array<double, 4>& ground, const CommandLimits* limits, const MixedAhead* ahead) {
-            new (self) RolloutProgram(model, parameters,
-                                      setting(period, ground, limits, ahead == nullptr ? SlipAhead{} : ahead->ahead));
+             const std::array<double, 4>& ground, const CommandLimits* limits, const MixedAhead* ahead, bool sideways) {
+            new (self) RolloutProgram(
+                model, parameters,
+                setting(period, ground, limits, ahead == nullptr ? SlipAhead{} : ahead->ahead, sideways));
           },
-          "model"_a, "parameters"_a, "period"_a, "ground"_a, "limits"_a.none(), "ahead"_a.none(),
+          "model"_a, "parameters"_a, "period"_a, "ground"_a, "limits"_a.none(), "ahead"_a.none(), "sideways"_a,
           "`ground` is gravity along the robot's x and y axes [m/s^2], and the rise of a plane per metre along the "
           "axes "
-          "of the starts' frame: one of the two pairs is zero.")
+          "of the starts' frame: one of the two pairs is zero. `sideways`: commands are (v, vy, omega).")
       .def_prop_ro("period", [](const RolloutProgram& program) { return program.setting().period; });
   nb::class_<StartList>(m, "StartList", "Where rollouts start.")
       .def(

@@ -125,7 +125,7 @@ def predict(  # noqa: PLR0913 - all but the first two are options
     *,
     horizon: float,
     start: float | None = None,
-    initial: tuple[float, float] | None = None,
+    initial: tuple[float, ...] | None = None,
     slip_now: _core.SlipNow | None = None,
     ground: Ground | None = None,
     at: Pose = (0.0, 0.0, 0.0),
@@ -137,10 +137,11 @@ def predict(  # noqa: PLR0913 - all but the first two are options
 
     Args:
         model: a learned model, or its file.
-        commands: rows of (t [s], v [m/s], omega [rad/s]), each held until the next, [N, 3], or `Inputs`.
+        commands: rows of (t [s], v [m/s], omega [rad/s]), each held until the next, [N, 3], or `Inputs`; of a
+            robot that drives sideways (t, v, vy, omega), of a car (t, throttle, steering).
         horizon: how far to predict [s].
         start: when the prediction starts [s]; by default at the first command.
-        initial: the measured (v [m/s], omega [rad/s]) at the start.
+        initial: the measured (v [m/s], omega [rad/s]), or (v, vy, omega), at the start.
         slip_now: where slip is at the start, as `slipwise.prediction.slip_seen` says.
         ground: a `Grade` or an `ElevationMap` of `slipwise.ground`; level by default.
         at: the robot's pose (x, y [m], yaw [rad]) at the start in the frame of the ground.

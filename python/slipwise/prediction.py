@@ -15,6 +15,7 @@ from slipwise.errors import SettingsError
 from slipwise.frames import data_frame
 from slipwise.ground import ElevationMap, Ground, Pose
 from slipwise.logs.log import Inputs
+from slipwise.models.axes import Axes, axes_of, drive_axes
 from slipwise.models.model import Model
 from slipwise.models.schema import StudentT
 from slipwise.models.seen_speeds import warn_of_unseen_speeds
@@ -106,7 +107,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     *,
     horizon: float,
     start: float | None = None,
-    initial: tuple[float, float] | None = None,
+    initial: tuple[float, ...] | None = None,
     slip_now: _core.SlipNow | None = None,
     ground: Ground | None = None,
     at: Pose = (0.0, 0.0, 0.0),
@@ -119,11 +120,12 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     Args:
         model: a learned model.
         commands: held inputs of the kind that the model was learned from: `Inputs`, or rows of
-            (t [s], v [m/s], omega [rad/s]), [N, 3]. Those before `start` matter where there is lag or delay.
+            (t [s], v [m/s], omega [rad/s]), [N, 3]; of a robot that drives sideways (t, v, vy, omega),
+            [N, 4], of a car (t, throttle, steering). Those before `start` matter where there is lag or delay.
         horizon: how far to predict [s]; poses are returned every `PERIOD` and at the horizon.
         start: when the prediction starts [s]; by default at the first command.
-        initial: the drive's measured (v [m/s], omega [rad/s]) at the start, of which a car
-            commanded by throttle and steering takes the speed; by default it follows from the commands,
+        initial: the drive's measured (v [m/s], omega [rad/s]), or (v, vy, omega), at the start, of which a
+            car commanded by throttle and steering takes the speed; by default it follows from the commands,
             before the first of which the robot is at rest.
         slip_now: where the slip disturbance is at the start, as `slip_seen` says; by default nothing recent
             is known of it.
@@ -146,7 +148,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     """
     _check_force(force_age, known_force, ground)
     model = model.body
-    inputs = commands if isinstance(commands, Inputs) else _inputs(commands)
+    inputs = commands if isinstance(commands, Inputs) else _inputs(commands, axes_of(model))
     if not (np.isfinite(horizon) and horizon > 0.0):
         raise SettingsError("the horizon must be positive seconds", advice="such as horizon=5.0")
     if horizon > LONGEST_HORIZON:
@@ -154,16 +156,13 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             f"a horizon of {horizon:g} s is too long", advice=f"give {LONGEST_HORIZON:g} s at most"
         )
     _check_speeds("commands", inputs.v, inputs.vy, inputs.omega)
-    warn_of_unseen_speeds(model, inputs.v, inputs.omega, stacklevel=3)
+    warn_of_unseen_speeds(model, np.column_stack((inputs.v, inputs.omega)), stacklevel=3)
     begin = float(inputs.t[0]) if start is None else start
     if not (np.isfinite(begin) and begin >= inputs.t[0]):
         raise SettingsError("the start must not lie before the first command", advice="give earlier commands")
-    if initial is not None:
-        if not np.isfinite(initial).all():
-            raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
-        _check_speeds("initial speeds", np.asarray(initial))
-    given = asked_twists(model, inputs, begin, initial)
-    known = None if model.car is not None else _measured_actuator(begin, initial)
+    measured = None if initial is None else _initial(initial, drive_axes(model))
+    given = asked_twists(model, inputs, begin, measured)
+    known = None if model.car is not None else _measured_actuator(begin, measured)
     history = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
     disturbance = _core.DisturbanceFilter(model.disturbance)
     now = disturbance.now(model.posterior, history, []) if slip_now is None else slip_now
@@ -213,7 +212,7 @@ def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) ->
 
 
 def asked_twists(
-    model: Model, inputs: Inputs, begin: float | None = None, initial: tuple[float, float] | None = None
+    model: Model, inputs: Inputs, begin: float | None = None, initial: Floats | None = None
 ) -> _core.InputHistory:
     """Inputs as twists; those of a car commanded by throttle and steering go through its curves."""
     car, known = model.car, inputs.car
@@ -221,19 +220,18 @@ def asked_twists(
         return _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
     throttle, steering = (inputs.v, inputs.omega) if known is None else (known.throttle, known.steering)
     commands = _core.InputHistory(inputs.t, throttle, np.zeros_like(throttle), steering)
-    measured = None if begin is None or initial is None else (begin, initial[0])
+    measured = None if begin is None or initial is None else (begin, float(initial[0]))
     return car.twists(commands, float(inputs.t[0]), measured)
 
 
 def _measured_actuator(
-    begin: float, initial: tuple[float, float] | None
+    begin: float, initial: Floats | None
 ) -> tuple[_core.InputHistory, float, _core.BodyTwist] | None:
     """Speeds measured at `begin`, held while the poses, stamped late, were under way."""
     if initial is None:
         return None
-    v, omega = initial
-    held = _core.InputHistory(*(np.array([value]) for value in (begin - LONGEST_OFFSET, v, 0.0, omega)))
-    return held, begin, _core.BodyTwist(v, 0.0, omega)
+    held = _core.InputHistory(*(np.array([value]) for value in (begin - LONGEST_OFFSET, *initial)))
+    return held, begin, _core.BodyTwist(*initial.tolist())
 
 
 def student_at(model: Model, horizon: float) -> StudentT:
@@ -251,6 +249,16 @@ def student_at(model: Model, horizon: float) -> StudentT:
         for name in ("inflation", "dof")
     )
     return StudentT(inflation=float(inflation), dof=float(np.clip(dof, LEAST_DOF, MOST_DOF)))
+
+
+def _initial(initial: tuple[float, ...], axes: Axes) -> Floats:
+    """Return initial speeds as (v, vy, omega)."""
+    values = np.atleast_1d(np.asarray(initial, dtype=np.float64))
+    axes.check("the initial speeds are given", values.shape[-1])
+    if values.ndim != 1 or not np.isfinite(values).all():
+        raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
+    _check_speeds("initial speeds", values)
+    return axes.twists(values)
 
 
 def _check_force(age: float, known: tuple[float, float], ground: Ground | None) -> None:
@@ -285,23 +293,24 @@ def _check_speeds(name: str, *speeds: Floats) -> None:
         )
 
 
-def _inputs(commands: ArrayLike) -> Inputs:
+def _inputs(commands: ArrayLike, axes: Axes) -> Inputs:
     try:
         rows = np.asarray(commands, dtype=np.float64)
     except (TypeError, ValueError) as problem:
-        raise _not_rows("are no numbers") from problem
-    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) == 0:
-        raise _not_rows(f"have shape {rows.shape}")
+        raise _not_rows("are no numbers", axes) from problem
+    if rows.ndim != 2 or rows.shape[1] != 1 + len(axes) or len(rows) == 0:
+        raise _not_rows(f"have shape {rows.shape}", axes)
     if not np.isfinite(rows).all():
-        raise _not_rows("are not finite")
+        raise _not_rows("are not finite", axes)
     if not (np.diff(rows[:, 0]) > 0.0).all():
-        raise _not_rows("do not go forward in time")
-    t, v, omega = (np.ascontiguousarray(column) for column in rows.T)
-    return Inputs(t=t, v=v, vy=np.zeros_like(v), omega=omega)
+        raise _not_rows("do not go forward in time", axes)
+    v, vy, omega = (np.ascontiguousarray(column) for column in axes.twists(rows[:, 1:]).T)
+    return Inputs(t=np.ascontiguousarray(rows[:, 0]), v=v, vy=vy, omega=omega)
 
 
-def _not_rows(fault: str) -> SettingsError:
+def _not_rows(fault: str, axes: Axes) -> SettingsError:
+    names = ", ".join(("t", *axes.names))
     return SettingsError(
-        f"commands {fault} where rows of (t, v, omega) are needed, finite and in order of t",
-        advice="stack them with numpy.column_stack((t, v, omega))",
+        f"commands {fault} where rows of ({names}) are needed, finite and in order of t",
+        advice=f"stack them with numpy.column_stack(({names}))",
     )

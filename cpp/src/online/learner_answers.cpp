@@ -42,6 +42,21 @@ void check(const std::vector<InputSample>& future, double horizon) {
   }
 }
 
+/// The same of base_link: without the rows that say where the pose sensor sits on it.
+MotionPosterior of_base_link(MotionPosterior posterior) {
+  ActuatorParameters learned = posterior.model.learned();
+  if (!learned.sensor_extrinsics) {
+    return posterior;
+  }
+  learned.sensor_extrinsics = false;
+  posterior.model = MotionModel(posterior.model.basis(), learned);
+  const Eigen::Index kept = posterior.model.size();
+  posterior.estimate.mean.conservativeResize(kept);
+  posterior.estimate.covariance.conservativeResize(kept, kept);
+  posterior.prior_std.conservativeResize(kept);
+  return posterior;
+}
+
 }  // namespace
 
 StudentT MotionLearner::student_for(double horizon, Structure structure) const {
@@ -89,16 +104,17 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   }
   work_until(stream_.newest() - kReady);
   const Knowledge& known = known_at(stream_.newest() - std::max(embargo, kReady));
-  const DrivenSegment ahead = stream_.segment_ahead(horizon, inputs);
+  DrivenSegment ahead = stream_.segment_ahead(horizon, inputs);
+  ahead.segment.sensor = {};
   SlipNow slip = recent_slip_.after(*known.disturbance, known.motion, recent_before(stream_.newest()));
   if (settings_.learn_disturbance) {
     for (const DrivenSegment& segment : complete_now()) {
       known.disturbance->follow(*known.motion, slip, segment);
     }
   }
-  const auto motion = aged(known, ahead.segment);
+  const MotionPosterior motion = of_base_link(*aged(known, ahead.segment));
   const auto beginnings =
-      linearize_beginnings(motion->model, motion->estimate.mean, ahead.inputs, ahead.segment, kPathPoses);
+      linearize_beginnings(motion.model, motion.estimate.mean, ahead.inputs, ahead.segment, kPathPoses);
   PredictedPath path{.start = stream_.newest(),
                      .t = {},
                      .poses = {},
@@ -108,7 +124,7 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   std::ranges::transform(beginnings, std::back_inserter(path.t),
                          [](const SegmentLinearization& part) { return part.path.times.back(); });
   path.t.back() = ahead.segment.end;
-  const auto along = known.disturbance->predict_along(*motion, slip, beginnings, ahead.segment);
+  const auto along = known.disturbance->predict_along(motion, slip, beginnings, ahead.segment);
   for (std::size_t i = 0; i < along.size(); ++i) {
     path.students.push_back(student_for(path.t[i] - path.start, known.motion->structure));
     path.poses.push_back(along[i].pose);

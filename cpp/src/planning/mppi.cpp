@@ -25,6 +25,7 @@ void check_models(const std::vector<RolloutProgram>& models, const MppiSettings&
   need(!models.empty(), "give at least one model to drive through");
   for (const RolloutProgram& model : models) {
     need(model.setting().period == settings.period, "the models' period must be that of the controller");
+    need(model.sideways() == models.front().sideways(), "models that drive sideways do not mix with others");
   }
 }
 
@@ -32,18 +33,36 @@ float correlation(const MppiSettings& settings) {
   return settings.colour > 0.0 ? static_cast<float>(std::exp(-settings.period / settings.colour)) : 0.0F;
 }
 
-/// Adds noise to the planned value, within its range and within its change from the value before.
-struct CommandSampler {
-  float planned, spread, lowest, highest, change;
-
-  void run(const float* noise, const float* before, float* out, std::size_t count) const {
-    for (std::size_t i = 0; i < count; ++i) {
-      const float low = std::max(lowest, before[i] - change);
-      const float high = std::min(highest, before[i] + change);
-      out[i] = std::min(std::max(planned + spread * noise[i], low), high);
-    }
+std::vector<MppiAxis> axes_of(const MppiSettings& settings, bool sideways) {
+  const MppiLimits& limits = settings.limits;
+  std::vector<MppiAxis> axes;
+  const auto add = [&](double DriveCommand::* part, double spread, double lowest, double highest, double rate) {
+    const std::uint64_t seed = settings.seed + axes.size() * 0x5bd1e995U;
+    axes.push_back({.part = part,
+                    .spread = static_cast<float>(spread),
+                    .lowest = static_cast<float>(lowest),
+                    .highest = static_cast<float>(highest),
+                    .change = static_cast<float>(rate * settings.period),
+                    .noise = ColouredNoise(settings.rollouts, correlation(settings), seed)});
+  };
+  add(&DriveCommand::v, settings.speed_std, limits.lowest_speed, limits.highest_speed, limits.acceleration);
+  add(&DriveCommand::omega, settings.yaw_rate_std, -limits.yaw_rate, limits.yaw_rate, limits.yaw_acceleration);
+  if (sideways) {
+    add(&DriveCommand::vy, settings.sideways_std, -limits.sideways_speed, limits.sideways_speed,
+        limits.sideways_acceleration);
   }
-};
+  return axes;
+}
+
+/// Adds noise to the planned value, within its range and within its change from the value before.
+void sample_period(const MppiAxis& axis, float planned, const float* noise, const float* before, float* out,
+                   std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float low = std::max(axis.lowest, before[i] - axis.change);
+    const float high = std::min(axis.highest, before[i] + axis.change);
+    out[i] = std::min(std::max(planned + axis.spread * noise[i], low), high);
+  }
+}
 
 float map_value(const Costmap& map, const Pose2& pose) {
   const double column = std::floor((pose.x - map.origin_x) / map.resolution);
@@ -59,13 +78,15 @@ float map_value(const Costmap& map, const Pose2& pose) {
 void MppiSettings::check() const {
   need(rollouts >= 2 && periods >= 2 && rollouts * periods <= 100'000'000, "give 2 rollouts and 2 periods or more");
   need(positive(period), "the period must be positive seconds");
-  need(positive(speed_std) && positive(yaw_rate_std) && not_negative(colour), "the noise must be positive");
+  need(positive(speed_std) && positive(yaw_rate_std) && positive(sideways_std) && not_negative(colour),
+       "the noise must be positive");
   need(positive(temperature), "the temperature must be positive");
   need(risk >= 0.0 && risk <= 1.0, "the risk must lie between 0 and 1");
   need(std::isfinite(limits.lowest_speed) && std::isfinite(limits.highest_speed) &&
            limits.lowest_speed < limits.highest_speed,
        "the lowest speed must lie below the highest");
-  need(positive(limits.yaw_rate) && positive(limits.acceleration) && positive(limits.yaw_acceleration),
+  need(positive(limits.yaw_rate) && positive(limits.acceleration) && positive(limits.yaw_acceleration) &&
+           positive(limits.sideways_speed) && positive(limits.sideways_acceleration),
        "the limits must be positive");
   for (const double cost :
        {costs.across, costs.along, costs.heading, costs.smoothness, costs.obstacle, costs.collision}) {
@@ -77,8 +98,7 @@ Mppi::Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings, std
     : models_(std::move(models)),
       settings_((settings.check(), settings)),
       car_(std::move(car)),
-      noise_v_(settings.rollouts, correlation(settings), settings.seed),
-      noise_omega_(settings.rollouts, correlation(settings), settings.seed + 0x5bd1e995U),
+      axes_((check_models(models_, settings_), axes_of(settings_, models_.front().sideways()))),
       plan_(settings.periods),
       cost_(settings.rollouts),
       mean_(settings.rollouts),
@@ -86,15 +106,20 @@ Mppi::Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings, std
       free_(settings.rollouts),
       map_sum_(settings.rollouts),
       map_highest_(settings.rollouts) {
-  check_models(models_, settings_);
-  for (auto* values : {&v_, &omega_, &x_, &y_, &theta_}) {
+  need(!(car_ && models_.front().sideways()), "a car commanded by throttle and steering does not drive sideways");
+  for (auto* values : {&x_, &y_, &theta_}) {
     values->resize(settings_.rollouts * settings_.periods);
+  }
+  for (MppiAxis& axis : axes_) {
+    axis.values.resize(settings_.rollouts * settings_.periods);
   }
 }
 
 void Mppi::adopt(std::vector<RolloutProgram> models, std::optional<CarCurves> car) {
   check_models(models, settings_);
   need(car.has_value() == car_.has_value(), "models of throttle and steering do not take the place of others");
+  need(models.front().sideways() == models_.front().sideways(),
+       "models that drive sideways do not take the place of others");
   car_ = std::move(car);
   models_ = std::move(models);
 }
@@ -106,47 +131,31 @@ void Mppi::reset(const DriveCommand& command) {
 
 void Mppi::sample(const DriveCommand& last) {
   const std::size_t count = settings_.rollouts;
-  const MppiLimits& limits = settings_.limits;
-  CommandSampler speed{.planned = 0.0F,
-                       .spread = static_cast<float>(settings_.speed_std),
-                       .lowest = static_cast<float>(limits.lowest_speed),
-                       .highest = static_cast<float>(limits.highest_speed),
-                       .change = static_cast<float>(limits.acceleration * settings_.period)};
-  CommandSampler turn{.planned = 0.0F,
-                      .spread = static_cast<float>(settings_.yaw_rate_std),
-                      .lowest = static_cast<float>(-limits.yaw_rate),
-                      .highest = static_cast<float>(limits.yaw_rate),
-                      .change = static_cast<float>(limits.yaw_acceleration * settings_.period)};
-  std::vector<float> before_v(count, static_cast<float>(last.v));
-  std::vector<float> before_omega(count, static_cast<float>(last.omega));
-  const float* from_v = before_v.data();
-  const float* from_omega = before_omega.data();
   std::vector<float> noise(count);
-  noise_v_.begin();
-  noise_omega_.begin();
-  for (std::size_t k = 0; k < settings_.periods; ++k) {
-    speed.planned = static_cast<float>(plan_[k].v);
-    turn.planned = static_cast<float>(plan_[k].omega);
-    const auto drawn = [&](ColouredNoise& from) {
-      noise = from.next();
+  for (MppiAxis& axis : axes_) {
+    const std::vector<float> sent(count, static_cast<float>(last.*axis.part));
+    const float* before = sent.data();
+    axis.noise.begin();
+    for (std::size_t k = 0; k < settings_.periods; ++k) {
+      noise = axis.noise.next();
       noise[0] = 0.0F;  // the plan itself is one of the rollouts
-      return noise.data();
-    };
-    speed.run(drawn(noise_v_), from_v, v_.data() + k * count, count);
-    turn.run(drawn(noise_omega_), from_omega, omega_.data() + k * count, count);
-    from_v = v_.data() + k * count;
-    from_omega = omega_.data() + k * count;
+      float* const out = axis.values.data() + k * count;
+      sample_period(axis, static_cast<float>(plan_[k].*axis.part), noise.data(), before, out, count);
+      before = out;
+    }
   }
 }
 
 void Mppi::drive(const RolloutProgram& model, const MppiState& state, const MppiReference& reference,
                  const Costmap* map) {
   const std::size_t count = settings_.rollouts;
-  RolloutBatch<float> batch{.rollouts = count,
-                            .periods = settings_.periods,
-                            .commands = {v_.data(), omega_.data(), 1, static_cast<std::ptrdiff_t>(count)},
-                            .starts = {&state.start, 1},
-                            .past = state.past};
+  RolloutBatch<float> batch{
+      .rollouts = count,
+      .periods = settings_.periods,
+      .commands = {axes_[0].values.data(), axes_[1].values.data(), 1, static_cast<std::ptrdiff_t>(count),
+                   axes_.size() > 2 ? axes_[2].values.data() : nullptr},
+      .starts = {&state.start, 1},
+      .past = state.past};
   CarBatch<float> twists;
   if (car_) {
     twists = car_batch(*car_, batch, settings_.period);
@@ -196,20 +205,18 @@ void Mppi::add_tracking(const MppiReference& reference) {
 
 void Mppi::add_smoothness(const DriveCommand& last) {
   const std::size_t count = settings_.rollouts;
-  const MppiLimits& limits = settings_.limits;
   const auto weight = static_cast<float>(settings_.costs.smoothness);
-  const auto per_v = static_cast<float>(1.0 / (limits.acceleration * settings_.period));
-  const auto per_omega = static_cast<float>(1.0 / (limits.yaw_acceleration * settings_.period));
-  const std::vector<float> last_v(count, static_cast<float>(last.v)), last_omega(count, static_cast<float>(last.omega));
   float* const cost = cost_.data();
-  for (std::size_t k = 0; k < settings_.periods; ++k) {
-    const float* const v = v_.data() + k * count;
-    const float* const omega = omega_.data() + k * count;
-    const float* const before_v = k == 0 ? last_v.data() : v - count;
-    const float* const before_omega = k == 0 ? last_omega.data() : omega - count;
-    for (std::size_t i = 0; i < count; ++i) {
-      const float dv = (v[i] - before_v[i]) * per_v, domega = (omega[i] - before_omega[i]) * per_omega;
-      cost[i] += weight * (dv * dv + domega * domega);
+  for (const MppiAxis& axis : axes_) {
+    const std::vector<float> sent(count, static_cast<float>(last.*axis.part));
+    const float per_change = 1.0F / axis.change;
+    for (std::size_t k = 0; k < settings_.periods; ++k) {
+      const float* const now = axis.values.data() + k * count;
+      const float* const before = k == 0 ? sent.data() : now - count;
+      for (std::size_t i = 0; i < count; ++i) {
+        const float change = (now[i] - before[i]) * per_change;
+        cost[i] += weight * (change * change);
+      }
     }
   }
 }
@@ -228,15 +235,15 @@ MppiResult Mppi::average() {
     sum += cost;
     squares += static_cast<double>(cost) * cost;
   }
-  for (std::size_t k = 0; k < settings_.periods; ++k) {
-    const float* const v = v_.data() + k * count;
-    const float* const omega = omega_.data() + k * count;
-    float mean_v = 0.0F, mean_omega = 0.0F;
-    for (std::size_t i = 0; i < count; ++i) {
-      mean_v += cost_[i] * v[i];
-      mean_omega += cost_[i] * omega[i];
+  for (const MppiAxis& axis : axes_) {
+    for (std::size_t k = 0; k < settings_.periods; ++k) {
+      const float* const values = axis.values.data() + k * count;
+      float mean = 0.0F;
+      for (std::size_t i = 0; i < count; ++i) {
+        mean += cost_[i] * values[i];
+      }
+      plan_[k].*axis.part = mean / sum;
     }
-    plan_[k] = {.v = mean_v / sum, .omega = mean_omega / sum};
   }
   return {.command = plan_.front(), .plan = plan_, .best_cost = best, .effective = sum * sum / squares};
 }

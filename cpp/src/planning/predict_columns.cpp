@@ -92,19 +92,26 @@ void convert_chunk(ChunkPoses& poses, float per_period) {
 }
 
 /// The commands of fewer rollouts than a chunk, and the first one's in place of those that are missing.
-CommandView<float> padded(const CommandView<float>& view, std::size_t count, std::size_t periods, std::vector<float>& v,
-                          std::vector<float>& omega) {
-  v.resize(kChunk * periods);
-  omega.resize(kChunk * periods);
-  for (std::size_t k = 0; k < periods; ++k) {
-    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(k) * view.period_stride;
-    for (std::size_t n = 0; n < kChunk; ++n) {
-      const std::ptrdiff_t from = row + (n < count ? static_cast<std::ptrdiff_t>(n) : 0);
-      v[k * kChunk + n] = view.v[from];
-      omega[k * kChunk + n] = view.omega[from];
+CommandView<float> padded(const CommandView<float>& view, std::size_t count, std::size_t periods,
+                          std::array<std::vector<float>, 3>& columns) {
+  const auto pad = [&](const float* given, std::vector<float>& column) -> const float* {
+    if (given == nullptr) {
+      return nullptr;
     }
-  }
-  return {.v = v.data(), .omega = omega.data(), .rollout_stride = 1, .period_stride = kChunk};
+    column.resize(kChunk * periods);
+    for (std::size_t k = 0; k < periods; ++k) {
+      const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(k) * view.period_stride;
+      for (std::size_t n = 0; n < kChunk; ++n) {
+        column[k * kChunk + n] = given[row + (n < count ? static_cast<std::ptrdiff_t>(n) : 0)];
+      }
+    }
+    return column.data();
+  };
+  return {.v = pad(view.v, columns[0]),
+          .omega = pad(view.omega, columns[1]),
+          .rollout_stride = 1,
+          .period_stride = kChunk,
+          .vy = pad(view.vy, columns[2])};
 }
 
 /// Rolls a chunk out, and writes its velocities.
@@ -116,16 +123,17 @@ struct ColumnWork {
   const VelocityColumns& velocities;
   RolloutOptions options;
   ChunkPoses poses = ChunkPoses(commands.periods);
-  std::vector<float> padded_v = {}, padded_omega = {};
+  std::array<std::vector<float>, 3> padded_columns = {};
 
   void at(std::size_t first) {
     const std::size_t count = std::min(kChunk, commands.rollouts - first);
     CommandView<float> view{.v = commands.v + first,
                             .omega = commands.omega + first,
                             .rollout_stride = 1,
-                            .period_stride = static_cast<std::ptrdiff_t>(commands.rollouts)};
+                            .period_stride = static_cast<std::ptrdiff_t>(commands.rollouts),
+                            .vy = commands.vy == nullptr ? nullptr : commands.vy + first};
     if (count < kChunk) {
-      view = padded(view, count, commands.periods, padded_v, padded_omega);
+      view = padded(view, count, commands.periods, padded_columns);
     }
     RolloutOutputs<float> outputs;
     outputs.x = poses.x.data();

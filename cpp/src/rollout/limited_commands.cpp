@@ -6,10 +6,10 @@ namespace slipwise {
 
 void add_pieces(const RolloutProgram& program, const DriveCommand& command, LimitedStart& start) {
   const double piece = program.actuator().period;
-  start.limiter.tell({command.v, 0.0, command.omega});
+  start.limiter.tell({command.v, command.vy, command.omega});
   for (std::size_t i = 0; i < program.pieces(); ++i) {
     const BodyTwist mean = start.limiter.mean_over(piece, piece);
-    start.given.push_back({mean.v, mean.omega});
+    start.given.push_back({mean.v, mean.omega, mean.vy});
   }
 }
 
@@ -17,13 +17,13 @@ LimitedStart limited_start(const RolloutProgram& program, std::span<const DriveC
                            const DriveCommand& commanded) {
   LimitedStart start{.limiter = CommandLimiter(program.setting().limits), .given = {}};
   if (past.empty()) {
-    start.limiter.place({commanded.v, 0.0, commanded.omega});
+    start.limiter.place({commanded.v, commanded.vy, commanded.omega});
     start.given.push_back(commanded);
     return start;
   }
-  start.limiter.settle({past.front().v, 0.0, past.front().omega});
+  start.limiter.settle({past.front().v, past.front().vy, past.front().omega});
   const BodyTwist settled = start.limiter.target();
-  start.given.push_back({settled.v, settled.omega});
+  start.given.push_back({settled.v, settled.omega, settled.vy});
   for (const DriveCommand& command : past) {
     add_pieces(program, command, start);
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "slipwise/rollout/actuator_start.hpp"
+#include "slipwise/rollout/check_batch.hpp"
 #include "slipwise/rollout/gpu/gpu.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/limited_commands.hpp"
@@ -34,55 +35,6 @@ LaneKernelOfLevel<Scalar> kernel_of(InstructionLevel level) {
     kernel = avx2_kernel(Scalar{});
   }
   return kernel.roll != nullptr ? kernel : portable_kernel(Scalar{});
-}
-
-bool is_finite(const RolloutStart& start) {
-  return start.pose.vector().allFinite() && std::isfinite(start.drive.v) && std::isfinite(start.drive.omega);
-}
-
-template <typename Scalar>
-void check(const RolloutBatch<Scalar>& batch) {
-  if (batch.rollouts == 0 || batch.periods == 0) {
-    throw std::invalid_argument("the batch is empty: " + std::to_string(batch.rollouts) + " rollouts of " +
-                                std::to_string(batch.periods) + " periods; give at least one command");
-  }
-  if (batch.commands.v == nullptr || batch.commands.omega == nullptr) {
-    throw std::invalid_argument("the batch has no commands; point to speeds and yaw rates");
-  }
-  if (batch.starts.size() != 1 && batch.starts.size() != batch.rollouts) {
-    throw std::invalid_argument("there are " + std::to_string(batch.starts.size()) + " starts for " +
-                                std::to_string(batch.rollouts) + " rollouts; give one, or one each");
-  }
-  if (batch.past.size() % batch.starts.size() != 0) {
-    throw std::invalid_argument(std::to_string(batch.past.size()) + " past commands cannot be shared out to " +
-                                std::to_string(batch.starts.size()) + " starts; give the same number for each");
-  }
-  for (std::size_t i = 0; i < batch.starts.size(); ++i) {
-    if (!is_finite(batch.starts[i])) {
-      throw std::invalid_argument("start " + std::to_string(i) + " is not finite");
-    }
-  }
-  for (std::size_t i = 0; i < batch.past.size(); ++i) {
-    if (!std::isfinite(batch.past[i].v) || !std::isfinite(batch.past[i].omega)) {
-      throw std::invalid_argument("past command " + std::to_string(i) + " is not finite");
-    }
-  }
-}
-
-/// Commands that no pose depends on, since they are still in the delay at the end, must be finite as well.
-template <typename Scalar>
-void check_commands(const RolloutBatch<Scalar>& batch, std::size_t first_period) {
-  const CommandView<Scalar>& commands = batch.commands;
-  for (std::size_t n = 0; n < batch.rollouts; ++n) {
-    for (std::size_t k = first_period; k < batch.periods; ++k) {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(n) * commands.rollout_stride +
-                                static_cast<std::ptrdiff_t>(k) * commands.period_stride;
-      if (!std::isfinite(commands.v[at]) || !std::isfinite(commands.omega[at])) {
-        throw std::invalid_argument("the command of rollout " + std::to_string(n) + " over period " +
-                                    std::to_string(k) + " is not finite");
-      }
-    }
-  }
 }
 
 template <typename Scalar>
@@ -134,6 +86,7 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
                       .periods = batch.periods,
                       .v = batch.commands.v,
                       .omega = batch.commands.omega,
+                      .vy = batch.commands.vy,
                       .rollout_stride = batch.commands.rollout_stride,
                       .period_stride = batch.commands.period_stride,
                       .path = {outputs.x, outputs.y, outputs.theta},
@@ -218,7 +171,7 @@ class BlockOfBatch {
 
  private:
   struct Drives {
-    ActuatorStart v, omega;
+    ActuatorStart v, omega, vy;
   };
 
   std::span<const DriveCommand> past_of(std::size_t rollout) const {
@@ -226,7 +179,8 @@ class BlockOfBatch {
   }
 
   double sent(std::size_t rollout, std::ptrdiff_t i, double DriveCommand::* channel) const {
-    const Scalar* commands = channel == &DriveCommand::v ? batch_.commands.v : batch_.commands.omega;
+    const CommandView<Scalar>& all = batch_.commands;
+    const Scalar* commands = channel == &DriveCommand::v ? all.v : channel == &DriveCommand::vy ? all.vy : all.omega;
     return SentCommands<Scalar>{batch_, rollout, past_of(rollout), commands, channel}(i);
   }
 
@@ -239,13 +193,17 @@ class BlockOfBatch {
       return actuator_start(actuator_, timing, now.*member, -static_cast<std::ptrdiff_t>(known_before),
                             [&](std::ptrdiff_t i) { return command(i, member); });
     };
-    return {channel(actuator_.v, &DriveCommand::v), channel(actuator_.omega, &DriveCommand::omega)};
+    return {.v = channel(actuator_.v, &DriveCommand::v),
+            .omega = channel(actuator_.omega, &DriveCommand::omega),
+            .vy = program_.sideways() ? channel(actuator_.v, &DriveCommand::vy) : ActuatorStart{}};
   }
 
   Drives drives_behind_limits(std::size_t rollout, LimitedStart start) const {
     const auto before = static_cast<std::ptrdiff_t>(start.given.size());
     for (std::ptrdiff_t i = 0; each_ && i <= -std::min(actuator_.v.shift, actuator_.omega.shift); ++i) {
-      add_pieces(program_, {sent(rollout, i, &DriveCommand::v), sent(rollout, i, &DriveCommand::omega)}, start);
+      DriveCommand command{.v = sent(rollout, i, &DriveCommand::v), .omega = sent(rollout, i, &DriveCommand::omega)};
+      command.vy = program_.sideways() ? sent(rollout, i, &DriveCommand::vy) : 0.0;
+      add_pieces(program_, command, start);
     }
     return drives_of(rollout, block_.past_count * program_.pieces(), [&](std::ptrdiff_t i, auto member) {
       return start.given[static_cast<std::size_t>(std::max(before + i, std::ptrdiff_t{0}))].*member;
@@ -257,9 +215,10 @@ class BlockOfBatch {
     Drives drives{};
     if (program_.limited()) {
       const DriveCommand& now = batch_.starts[many_ ? rollout : 0].drive;
-      const LimitedStart start =
-          limited_start(program_, past_of(rollout),
-                        {actuator_.v.response.keeping_input(now.v), actuator_.omega.response.keeping_input(now.omega)});
+      const LimitedStart start = limited_start(program_, past_of(rollout),
+                                               {.v = actuator_.v.response.keeping_input(now.v),
+                                                .omega = actuator_.omega.response.keeping_input(now.omega),
+                                                .vy = actuator_.v.response.keeping_input(now.vy)});
       for (std::size_t lane = first; lane < last; ++lane) {
         commands_.set_start(lane, start);
       }
@@ -291,6 +250,7 @@ class BlockOfBatch {
     };
     set_channel(block_.v, drives.v);
     set_channel(block_.omega, drives.omega);
+    set_channel(block_.vy, drives.vy);
   }
 
   alignas(64) std::array<Scalar, kStartRows * kMostLanes> rows_{};
@@ -362,7 +322,8 @@ unsigned roll_on(Gpu& gpu, const RolloutProgram& program, const RolloutBatch<Sca
 template <typename Scalar>
 void rollout_batch(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
                    const RolloutOutputs<Scalar>& outputs, const RolloutOptions& options) {
-  check(batch);
+  check_batch(batch);
+  check_axes(program, batch);
   const LaneJob<Scalar> job = job_of(program, batch, outputs);
   const bool out_of_sight = options.gpu != nullptr && lies_on_gpu(batch.commands.v);
   if (out_of_sight && program.actuator().responds && std::min(job.shift_v, job.shift_omega) < 0) {

@@ -19,6 +19,13 @@ std::optional<std::array<double, 2>> constant_gravity(const RolloutSetting& sett
   return setting.on_grade() ? std::nullopt : std::optional(std::array{setting.gx, setting.gy});
 }
 
+/// Where slip depends on a sideways speed, commands have one.
+RolloutSetting with_axes(const MotionModel& model, const RolloutSetting& setting) {
+  RolloutSetting known = setting;
+  known.sideways = setting.sideways || model.basis().sideways();
+  return known;
+}
+
 SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                     const RolloutSetting& setting) {
   model.check(parameters);
@@ -33,7 +40,7 @@ SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::Vect
     throw std::invalid_argument("give the gravity along the robot's axes or the ground's grade, not both");
   }
   const Eigen::VectorXd alpha = parameters.head(model.slip_size());
-  return compile_slip(model.basis(), {alpha.data(), model.basis().size()}, constant_gravity(setting));
+  return compile_slip(model.basis(), {alpha.data(), model.basis().size()}, constant_gravity(setting), setting.sideways);
 }
 
 /// The drive itself does not change.
@@ -41,9 +48,13 @@ std::vector<SlipProgram> changes_of(const MotionModel& model, const RolloutSetti
   check_ahead(setting.ahead, model.slip_size());
   std::vector<SlipProgram> changes;
   for (const Eigen::VectorXd& change : setting.ahead.changes) {
-    changes.push_back(compile_slip(model.basis(), {change.data(), model.basis().size()}, constant_gravity(setting)));
+    changes.push_back(compile_slip(model.basis(), {change.data(), model.basis().size()}, constant_gravity(setting),
+                                   setting.sideways));
     changes.back().products[kProductV].fraction[0] -= 1.0;
     changes.back().products[kProductOmega].fraction[2] -= 1.0;
+    if (setting.sideways) {
+      changes.back().products[kProductSideV].fraction[1] -= 1.0;
+    }
   }
   return changes;
 }
@@ -148,9 +159,9 @@ LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const std::vector<
 
 RolloutProgram::RolloutProgram(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                const RolloutSetting& setting)
-    : setting_(setting),
-      slip_(slip_of(model, parameters, setting)),
-      changes_(changes_of(model, setting)),
+    : setting_(with_axes(model, setting)),
+      slip_(slip_of(model, parameters, setting_)),
+      changes_(changes_of(model, setting_)),
       pieces_(pieces_of(setting)),
       actuator_(schedule_actuator(model.actuator(parameters), setting.period / static_cast<double>(pieces_))),
       quadratic_(find_quadratic(slip_)),

@@ -13,16 +13,16 @@ namespace {
 
 class Compiler {
  public:
-  Compiler() {
+  explicit Compiler(bool sideways) {
     program_.products = {{kProductOne, SlipFactor::V, {1.0, 0.0, 0.0}},
                          {kProductOne, SlipFactor::Omega, {0.0, 0.0, 1.0}},
                          {kProductOne, SlipFactor::V, {}}};
+    if (sideways) {
+      program_.products[product(kProductOne, SlipFactor::SideV)].fraction[1] = 1.0;
+    }
   }
 
   void add(const Term& term, std::size_t channel, double alpha, const std::optional<std::array<double, 2>>& gravity) {
-    if (term.sideways()) {
-      return;  // a rollout never drives sideways
-    }
     if (term.by_heading()) {
       throw std::invalid_argument("the term '" + term.text() +
                                   "' depends on the heading in the frame of the poses, which rollouts do not know");
@@ -31,7 +31,9 @@ class Compiler {
     std::vector<SlipFactor> factors;
     for (const Quantity quantity : term.factors()) {
       const bool along_x = quantity == Quantity::GravityX;
-      if (!along_x && quantity != Quantity::GravityY) {
+      if (is_sideways(quantity)) {
+        factors.push_back(sideways_factor(quantity));
+      } else if (!along_x && quantity != Quantity::GravityY) {
         factors.push_back(static_cast<SlipFactor>(quantity));
       } else if (!gravity) {
         factors.push_back(along_x ? SlipFactor::GravityX : SlipFactor::GravityY);
@@ -60,6 +62,12 @@ class Compiler {
   }
 
  private:
+  static SlipFactor sideways_factor(Quantity quantity) {
+    return quantity == Quantity::SideV      ? SlipFactor::SideV
+           : quantity == Quantity::AbsSideV ? SlipFactor::AbsSideV
+                                            : SlipFactor::ThirdHarmonic;
+  }
+
   /// The place of parent * factor, which is made where it is new.
   std::size_t product(std::size_t parent, SlipFactor factor) {
     if (parent == kProductOne && factor == SlipFactor::V) {
@@ -108,8 +116,8 @@ std::optional<LaneQuadratic> find_quadratic(const SlipProgram& program) {
 }
 
 SlipProgram compile_slip(const Basis& basis, std::span<const double> alpha,
-                         const std::optional<std::array<double, 2>>& gravity) {
-  Compiler compiler;
+                         const std::optional<std::array<double, 2>>& gravity, bool sideways) {
+  Compiler compiler(sideways);
   for (std::size_t i = 0; i < basis.size(); ++i) {
     compiler.add(basis.terms()[i], static_cast<std::size_t>(basis.channel(i)), alpha[i], gravity);
   }

@@ -21,6 +21,7 @@ struct SampleCommands {
   std::size_t periods;
   double period;
   std::vector<Scalar> v, omega;
+  std::vector<Scalar> vy = {};  ///< of a robot that drives sideways
 
   SampleCommands(std::size_t n, std::size_t k, double dt, double fastest_turn = 1.0)
       : rollouts(n), periods(k), period(dt) {
@@ -41,7 +42,25 @@ struct SampleCommands {
     }
   }
 
-  CommandView<Scalar> view() const { return {v.data(), omega.data(), 1, static_cast<std::ptrdiff_t>(rollouts)}; }
+  /// The same commands, sideways too: for a while, and in some rollouts nothing else.
+  SampleCommands sideways() const {
+    SampleCommands driven = *this;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const double t = period * static_cast<double>(i / rollouts);
+      const double phase = static_cast<double>(i % rollouts);
+      driven.vy.push_back(static_cast<Scalar>(i % rollouts % 4 == 1 ? 0.0 : 0.6 * std::sin(1.3 * t + phase)));
+      driven.v[i] = i % rollouts % 4 == 2 ? Scalar{0} : driven.v[i];
+      driven.omega[i] = i % rollouts % 8 == 2 ? Scalar{0} : driven.omega[i];
+    }
+    return driven;
+  }
+
+  /// Those that a robot with this slip may be given.
+  SampleCommands for_basis(const Basis& basis) const { return basis.sideways() ? sideways() : *this; }
+
+  CommandView<Scalar> view() const {
+    return {v.data(), omega.data(), 1, static_cast<std::ptrdiff_t>(rollouts), vy.empty() ? nullptr : vy.data()};
+  }
   RolloutBatch<Scalar> batch(std::span<const RolloutStart> starts, std::span<const DriveCommand> past = {}) const {
     return {rollouts, periods, view(), starts, past};
   }
@@ -52,20 +71,22 @@ struct SampleCommands {
     if (!past.empty()) {  // what is older equals the oldest
       t.push_back(-1e3);
       forward.push_back(past.front().v);
+      left.push_back(past.front().vy);
       turn.push_back(past.front().omega);
     }
     for (std::size_t i = 0; i < past.size(); ++i) {
       t.push_back(-period * static_cast<double>(past.size() - i));
       forward.push_back(past[i].v);
+      left.push_back(past[i].vy);
       turn.push_back(past[i].omega);
     }
     for (std::size_t j = 0; j <= periods; ++j) {  // the last one goes on, in steps as before
       const std::size_t at = std::min(j, periods - 1) * rollouts + rollout;
       t.push_back(period * static_cast<double>(j));
       forward.push_back(static_cast<double>(v[at]));
+      left.push_back(vy.empty() ? 0.0 : static_cast<double>(vy[at]));
       turn.push_back(static_cast<double>(omega[at]));
     }
-    left.assign(t.size(), 0.0);
     return {t, forward, left, turn};
   }
 };

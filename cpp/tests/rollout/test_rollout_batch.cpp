@@ -65,11 +65,11 @@ TEST_CASE("rollouts of 5 s are those of the plain integrator in every basis and 
       for (const InstructionLevel level : kInstructionLevels) {
         if (has_instruction_level(level)) {
           CAPTURE(name_of(level));
-          CHECK(error(model, parameters, commands, level) < 1e-9);
+          CHECK(error(model, parameters, commands.for_basis(basis), level) < 1e-9);
           // Where a lagging speed passes zero, the sample of thesis-15 jumps by metres within one period, and by 1e-5 m
           // for a rounding of the speed. Two lags without fused multiply-adds round it more often.
           const bool coarse = level == InstructionLevel::Portable && actuator.learned.response;
-          CHECK(error(model, parameters, in_float, level) < (coarse ? 2.5e-5 : 1e-5));
+          CHECK(error(model, parameters, in_float.for_basis(basis), level) < (coarse ? 2.5e-5 : 1e-5));
         }
       }
     }

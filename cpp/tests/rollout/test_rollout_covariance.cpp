@@ -44,10 +44,11 @@ Eigen::Matrix3d matrix_at(const std::vector<double>& entries, std::size_t poses,
 }
 
 TEST_CASE("the covariance of a pose is that of its segment in every basis") {
-  const tests::SampleCommands<double> commands(4, 60, kPeriod);
+  const tests::SampleCommands<double> all(4, 60, kPeriod);
   const std::vector<DriveCommand> past{{0.5, 0.1}, {0.4, 0.2}, {0.3, 0.2}, {0.4, 0.2}};
   for (const Basis& basis : tests::all_bases()) {
     CAPTURE(basis.name());
+    const auto commands = all.for_basis(basis);
     for (const std::size_t which : {std::size_t{3}, std::size_t{6}}) {
       const tests::SampleChain actuator = tests::sample_chains()[which];
       CAPTURE(std::string(actuator.name));

@@ -19,7 +19,11 @@ namespace {
 
 double value_of(SlipFactor factor, const SlipState& state) {
   if (factor == SlipFactor::Moving) {
-    return state.v != 0.0 || state.omega != 0.0 ? 1.0 : 0.0;
+    return state.v != 0.0 || state.vy != 0.0 || state.omega != 0.0 ? 1.0 : 0.0;
+  }
+  if (factor >= SlipFactor::SideV) {
+    const auto place = static_cast<std::size_t>(factor) - static_cast<std::size_t>(SlipFactor::SideV);
+    return SlipQuantities(state).value[static_cast<std::size_t>(Quantity::SideV) + place];
   }
   return SlipQuantities(state).value[static_cast<std::size_t>(factor)];  // in the order of Quantity
 }
@@ -39,9 +43,15 @@ Eigen::Vector3d evaluate(const SlipProgram& program, const SlipState& state) {
   return twist;
 }
 
+/// With terms of a sideways speed alone, and mixed with others.
+Basis sideways_basis() {
+  return {"omni", std::vector<std::string>{"V", "abs(Vy)*V", "V3*V"}, std::vector<std::string>{"Vy", "V3", "w*Vy^2"},
+          std::vector<std::string>{"w", "Vy", "abs(Vy)*w", "gy*Vy"}};
+}
+
 SlipProgram compiled(const Basis& basis, double gx = 0.0, double gy = 0.0) {
   const Eigen::VectorXd alpha = tests::sample_slip(basis, 9);
-  return compile_slip(basis, {alpha.data(), basis.size()}, std::array{gx, gy});
+  return compile_slip(basis, {alpha.data(), basis.size()}, std::array{gx, gy}, basis.sideways());
 }
 
 TEST_CASE("for all bases the products are the drive and its slip, on derivatives and parked too") {
@@ -52,6 +62,20 @@ TEST_CASE("for all bases the products are the drive and its slip, on derivatives
       const SlipState state{.v = v, .omega = omega, .gx = 0.8, .gy = -0.5};
       const Eigen::Vector3d wanted =
           Eigen::Vector3d(v, 0.0, omega) + slip_rate(basis, tests::sample_slip(basis, 9), state);
+      CHECK((evaluate(program, state) - wanted).norm() < 1e-13);
+    }
+  }
+}
+
+TEST_CASE("with a sideways speed the products are the drive and its slip as well") {
+  const Basis basis = sideways_basis();
+  const SlipProgram program = compiled(basis, 0.8, -0.5);
+  CHECK_FALSE(find_quadratic(program).has_value());
+  for (const auto& [v, vy] : {std::pair{0.9, 0.4}, {-0.7, 0.6}, {0.0, -0.8}, {0.5, 0.0}, {0.0, 0.0}}) {
+    for (const double omega : {0.0, 0.7}) {
+      const SlipState state{.v = v, .omega = omega, .gx = 0.8, .gy = -0.5, .vy = vy};
+      const Eigen::Vector3d wanted =
+          Eigen::Vector3d(v, vy, omega) + slip_rate(basis, tests::sample_slip(basis, 9), state);
       CHECK((evaluate(program, state) - wanted).norm() < 1e-13);
     }
   }
@@ -95,7 +119,7 @@ TEST_CASE("a basis with more products than a kernel has room for is refused") {
 TEST_CASE("a force that is fixed to the map is refused: rollouts know no heading there") {
   const Basis windy = with_force(named_basis("edd-2"), ForceFrame::World);
   const std::vector<double> alpha(windy.size(), 0.01);
-  CHECK_THROWS_AS(compile_slip(windy, alpha, std::nullopt), std::invalid_argument);
+  CHECK_THROWS_AS(compile_slip(windy, alpha, std::nullopt, false), std::invalid_argument);
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Log, has_course
 from slipwise.logs.motion_windows import evidence_of
 from slipwise.models import schema
+from slipwise.models.axes import sideways_span
 from slipwise.models.model import Model
 
 JUDGING_HORIZONS = (1.0, 2.0, 5.0)  # s
@@ -286,6 +287,7 @@ def _facts(
 def _range(drive: tuple[PreparedRun, ...]) -> schema.Range:
     speed = np.concatenate([run.inputs.v for run in drive])
     yaw_rate = np.concatenate([run.inputs.omega for run in drive])
+    sideways = np.concatenate([run.inputs.vy for run in drive])
     tilts = [t for run in drive for t in (run.run.poses.roll, run.run.poses.pitch) if t is not None]
     steepest = float(np.nanmax(np.abs(np.concatenate(tilts)))) if tilts else 0.0
     wheels = WheelStep()
@@ -295,6 +297,7 @@ def _range(drive: tuple[PreparedRun, ...]) -> schema.Range:
     return schema.Range(
         speed=[float(speed.min()), float(speed.max())],
         yaw_rate=[float(yaw_rate.min()), float(yaw_rate.max())],
+        sideways=sideways_span(speed, sideways),
         slope=steepest if np.isfinite(steepest) else 0.0,
         wheel_step=wheels.seconds,
     )

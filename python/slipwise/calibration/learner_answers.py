@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.learner import STRUCTURES
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +35,7 @@ class Event:
 
 @dataclass(frozen=True, eq=False)
 class PredictedPath:
-    """Where the robot will be, in the frame of the pose sensor at the start."""
+    """Where base_link will be, in the frame of its pose at the start."""
 
     start: float  # s, stamp of the newest measurement
     t: Floats  # [N] s, stamps of the poses; the last is at the horizon
@@ -42,6 +43,18 @@ class PredictedPath:
     covariance: Floats  # [N, 3, 3] of a Student t each
     dof: Floats  # [N] its degrees of freedom; few are heavy tails
     structure: str  # of the model that predicts: "joint", "cascaded", "direct" or "baseline"
+
+
+def path_of(path: _core.PredictedPath) -> PredictedPath:
+    """Return a path of the core."""
+    return PredictedPath(
+        start=path.start,
+        t=np.array(path.t),
+        poses=np.array(path.poses),
+        covariance=np.array(path.covariances),
+        dof=np.array([student.dof for student in path.students]),
+        structure=STRUCTURES[path.structure],
+    )
 
 
 def event_of(event: _core.LearnerEvent, run: str) -> Event:

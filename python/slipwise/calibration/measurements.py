@@ -4,10 +4,14 @@
 from __future__ import annotations
 
 from slipwise import _core
+from slipwise.calibration.core_settings import car_of
+from slipwise.calibration.settings import Settings
+from slipwise.calibration.sideways_seen import SidewaysSeen
 from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import SettingsError
 from slipwise.logs.attitude import mounting_words
 from slipwise.logs.fixes import fix_number
+from slipwise.models.axes import SIDEWAYS, THROTTLE, TWIST, Axes
 
 
 class Measurements:
@@ -15,9 +19,19 @@ class Measurements:
 
     _core: _core.MotionLearner
     _positions: bool
+    _input: str
+    _settings: Settings
     _wheels: bool
     _wheel_step: WheelStep
+    _sideways: dict[str, SidewaysSeen]  # of each input
     _sources: dict[str, int]  # of poses, by name
+
+    @property
+    def axes(self) -> Axes:
+        """The numbers of its inputs, and of the rows that `predict` takes."""
+        if car_of(self._settings) is not None:
+            return THROTTLE
+        return TWIST if self._sideways[self._input].span is None else SIDEWAYS
 
     @property
     def tells_sources(self) -> bool:
@@ -38,12 +52,14 @@ class Measurements:
         Of a car commanded by throttle and steering (`vehicle` of [log]) v is the throttle and omega the
         steering, both in [-1, 1].
         """
+        self._sideways["command"].take(v, vy)
         self._core.push_command(t, v, omega, vy)
 
     def push_wheels(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
         """Take the twist that the wheels measure: its stamp [s], speeds [m/s] and yaw rate [rad/s]."""
         self._wheels = True
         self._wheel_step.take(t)
+        self._sideways["wheel"].take(v, vy)
         self._core.push_wheels(t, v, omega, vy)
 
     def push_pose(  # noqa: PLR0913 (a measurement has as many numbers)

@@ -16,8 +16,8 @@ from slipwise.calibration.judge import Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import found_limits, held_out_predictions, kept_posterior
-from slipwise.calibration.learner import STRUCTURES, posterior_of
-from slipwise.calibration.learner_answers import Event, PredictedPath, event_of
+from slipwise.calibration.learner import posterior_of
+from slipwise.calibration.learner_answers import Event, PredictedPath, event_of, path_of
 from slipwise.calibration.measured_body import measured_body
 from slipwise.calibration.measurements import Measurements
 from slipwise.calibration.model_content import ModelFacts, model_content
@@ -25,6 +25,7 @@ from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import Settings, make_settings
+from slipwise.calibration.sideways_seen import SidewaysSeen
 from slipwise.calibration.sloping_ground import with_gravity
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
@@ -101,6 +102,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
         self._runs: list[str] = []
         self._wheels = False
         self._wheel_step = WheelStep()
+        self._sideways = {name: SidewaysSeen() for name in ("command", "wheel")}
         self._remember = remember
         self._start: Model | None = None  # that it began with
         self._of_log: tuple[Contradiction, ...] = ()  # what only a whole log shows
@@ -116,35 +118,28 @@ class MotionLearner(Measurements, RememberedSurfaces):
         """Return what happened since the last call."""
         return [event_of(event, self._run(event.run)) for event in self._core.events()]
 
-    def predict(
-        self, inputs: Sequence[tuple[float, float, float]] | ArrayLike, *, horizon: float
-    ) -> PredictedPath:
-        """Predict from the newest measurement on; commands that are on their way are part of it.
+    def predict(self, inputs: Sequence[tuple[float, ...]] | ArrayLike, *, horizon: float) -> PredictedPath:
+        """Predict the path of base_link from the newest measurement on, with commands that are on their way.
 
         Args:
-            inputs: what the robot will be given, rows of (t [s], v [m/s], omega [rad/s]), [N, 3].
+            inputs: what the robot will be given, rows of (t [s], v [m/s], omega [rad/s]), [N, 3]; of a robot
+                that drives sideways (t, v, vy, omega), [N, 4]; of a car (t, throttle, steering).
             horizon: how far to predict [s].
 
         Raises:
             SettingsError: the inputs are not such rows, the horizon is not positive or longer than an hour,
                 or nothing was measured yet.
         """
-        rows = np.asarray(inputs, dtype=np.float64)
-        if rows.ndim != 2 or rows.shape[1] != 3:
-            raise SettingsError(f"inputs have shape {rows.shape}", advice="give rows of (t, v, omega)")
-        future = np.column_stack((rows[:, 0], rows[:, 1], np.zeros(len(rows)), rows[:, 2]))
+        rows, axes = np.asarray(inputs, dtype=np.float64), self.axes
+        if rows.ndim != 2 or rows.shape[1] != 1 + len(axes):
+            names = ", ".join(("t", *axes.names))
+            raise SettingsError(f"inputs have shape {rows.shape}", advice=f"give rows of ({names})")
+        future = np.column_stack((rows[:, 0], axes.twists(rows[:, 1:])))
         try:
             path = self._core.predict(future, horizon, 0.0)
         except ValueError as problem:
             raise SettingsError(str(problem)) from problem
-        return PredictedPath(
-            start=path.start,
-            t=np.array(path.t),
-            poses=np.array(path.poses),
-            covariance=np.array(path.covariances),
-            dof=np.array([student.dof for student in path.students]),
-            structure=STRUCTURES[path.structure],
-        )
+        return path_of(path)
 
     def odometry(self) -> Odometry | None:
         """Return where the robot is at the newest measurement; None before the first pose of the run.
@@ -259,6 +254,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             range=Range(
                 speed=[slowest, fastest],
                 yaw_rate=[right, left],
+                sideways=self._sideways[self._input].span,
                 slope=model.steepest,
                 wheel_step=self._wheel_step.seconds,
             ),
@@ -340,6 +336,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             "runs": self._runs,
             "wheels": self._wheels,
             "wheel_step": [self._wheel_step.total, self._wheel_step.count, self._wheel_step.last],
+            "sideways": {name: [s.most, s.right, s.left] for name, s in self._sideways.items()},
             "positions": self._positions,
             "sources": list(self._sources),
             "gyro_alone": self._gyro_alone,
@@ -377,6 +374,8 @@ class MotionLearner(Measurements, RememberedSurfaces):
             if facts.get("start"):
                 learner._start = parse_model(facts["start"], where="saved model")
             learner._wheel_step = WheelStep(*facts.get("wheel_step", ()))
+            for name, seen in facts.get("sideways", {}).items():
+                learner._sideways[name] = SidewaysSeen(*seen)
             learner._runs, learner._wheels = [str(run) for run in facts["runs"]], bool(facts["wheels"])
         except (ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError) as problem:
             raise SettingsError(f"the saved learner cannot be loaded: {problem}") from problem

@@ -118,10 +118,17 @@ def _wider(a: Range, b: Range) -> Range:
     return Range(
         speed=[min(a.speed[0], b.speed[0]), max(a.speed[1], b.speed[1])],
         yaw_rate=[min(a.yaw_rate[0], b.yaw_rate[0]), max(a.yaw_rate[1], b.yaw_rate[1])],
+        sideways=_wider_span(a.sideways, b.sideways),
         slope=max(a.slope, b.slope),
         wheel_step=max(a.wheel_step, b.wheel_step),
         body=a.body and b.body and _wider_body(a.body, b.body),
     )
+
+
+def _wider_span(a: list[float] | None, b: list[float] | None) -> list[float] | None:
+    if a is None or b is None:
+        return a or b
+    return [min(a[0], b[0]), max(a[1], b[1])]
 
 
 def _wider_body(a: MeasuredBody, b: MeasuredBody) -> MeasuredBody:

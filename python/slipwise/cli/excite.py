@@ -12,6 +12,7 @@ from slipwise.cli.options import Json, optional
 
 if TYPE_CHECKING:
     from slipwise.excitation import CommandSpace, Excitation, Knowledge, Lesson, Vehicle
+    from slipwise.models import Model
 
 
 def excite(
@@ -104,18 +105,23 @@ def _known(
     from slipwise.errors import SettingsError
     from slipwise.excitation import CommandSpace, knowledge_of, prior_knowledge
     from slipwise.models import load_model
+    from slipwise.models.axes import axes_of
     from slipwise.planning import limits_of
 
     model, prior = files
     if model is not None and prior is not None:
         raise SettingsError("a model of this robot takes the place of its fleet's prior", where="--prior")
     learned = None if model is None else load_model(model)
+    if learned is not None:
+        learned.refuse_throttle("designed drives")
     limits: dict[str, float] = {}
     if learned is not None and vehicle is None:
         of_model = limits_of(learned)
         limits = {"speed": of_model.speed, "yaw_rate": of_model.yaw_rate}
     elif vehicle is not None:
         limits = {name: getattr(vehicle.space, name) for name in ("speed", "yaw_rate", "lateral")}
+    if learned is not None and axes_of(learned).sideways:
+        limits["sideways"] = _sideways_limit(learned)
     limits |= {name: value for name, value in given.items() if value is not None}
     if "speed" not in limits or "yaw_rate" not in limits:
         raise SettingsError(
@@ -129,6 +135,12 @@ def _known(
     if learned is None or not learned.content.parameters:  # the baseline predicts best
         return space, prior_knowledge(space)
     return space, knowledge_of(learned)
+
+
+def _sideways_limit(model: Model) -> float:
+    """How fast the robot was driven sideways, or at all where an older model does not say it [m/s]."""
+    seen = model.content.range
+    return max(map(abs, seen.sideways or seen.speed))
 
 
 def _write(
@@ -157,6 +169,7 @@ def _document(drive: Excitation, lessons: tuple[Lesson, ...], files: dict[str, P
         "lessons": [
             {
                 "v": lesson.move.v if lesson.move else None,
+                "vy": lesson.move.vy if lesson.move else None,
                 "omega": lesson.move.omega if lesson.move else None,
                 "worst_yaw_std": lesson.yaw,
                 "worst_position_std": lesson.position,

@@ -49,9 +49,9 @@ def _write(temporary: Path, drive: Excitation, topic: str, stamped: bool) -> Non
     bag = temporary.parent / "bag"  # the writer wants a folder that is not there yet
     with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         connection = writer.add_connection(topic, kind, typestore=store)
-        rows = zip(commands.t.tolist(), commands.v.tolist(), commands.omega.tolist(), strict=True)
-        for t, v, omega in rows:
-            message = twist(vector(v, 0.0, 0.0), vector(0.0, 0.0, omega))
+        columns = (commands.t, commands.v, commands.vy, commands.omega)
+        for t, v, vy, omega in zip(*(column.tolist() for column in columns), strict=True):
+            message = twist(vector(v, vy, 0.0), vector(0.0, 0.0, omega))
             if stamped:
                 message = types[TWIST_STAMPED](no_time, message)
             writer.write(connection, round(t * 1e9), store.serialize_cdr(message, kind))

@@ -25,33 +25,49 @@ class CommandSpace:
     speed: float  # m/s
     yaw_rate: float  # rad/s
     lateral: float = math.inf  # m/s^2, of speed times yaw rate
+    sideways: float = 0.0  # m/s to both sides; 0: the robot does not drive sideways
 
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
             infinite = math.isinf(value) and field.name != "lateral"
-            if not value > 0.0 or infinite:
+            if not (value > 0.0 or (value == 0.0 and field.name == "sideways")) or infinite:
                 raise SettingsError(
                     f"the limit {field.name} is {value}", where=field.name, advice="give a positive number"
                 )
 
     def slower(self, speed: float, yaw_rate: float) -> CommandSpace:
         """Return the same with these fractions of the limits."""
-        return replace(self, speed=speed * self.speed, yaw_rate=yaw_rate * self.yaw_rate)
+        sideways = speed * self.sideways
+        return replace(self, speed=speed * self.speed, yaw_rate=yaw_rate * self.yaw_rate, sideways=sideways)
 
     def grid(self, levels: int) -> NDArray[np.float64]:
-        """Return commands [N, 2] to both sides, `levels` of speed and yaw rate from zero to each limit."""
-        return self._within(
-            np.linspace(-self.speed, self.speed, 2 * levels - 1),
-            np.linspace(-self.yaw_rate, self.yaw_rate, 2 * levels - 1),
-        )
+        """Return commands (v, vy, omega) [N, 3] to both sides.
+
+        `levels` of speed and yaw rate from zero to each limit; sideways, the limits alone.
+        """
+        speeds = np.linspace(-self.speed, self.speed, 2 * levels - 1)
+        yaw_rates = np.linspace(-self.yaw_rate, self.yaw_rate, 2 * levels - 1)
+        return self._within(speeds, yaw_rates, (-1.0, 0.0, 1.0))
 
     def quadrant(self, levels: int) -> NDArray[np.float64]:
-        """Return the grid's commands [N, 2] forwards and to the left, without standing still."""
-        within = self._within(np.linspace(0.0, self.speed, levels), np.linspace(0.0, self.yaw_rate, levels))
+        """Return the grid's commands (v, vy, omega) [N, 3] forwards and to the left, without standing."""
+        speeds, yaw_rates = np.linspace(0.0, self.speed, levels), np.linspace(0.0, self.yaw_rate, levels)
+        within = self._within(speeds, yaw_rates, (0.0, 0.5, 1.0))
         return within[np.any(within > 0.0, axis=1)]
 
-    def _within(self, speeds: NDArray[np.float64], yaw_rates: NDArray[np.float64]) -> NDArray[np.float64]:
-        v, omega = (axis.ravel() for axis in np.meshgrid(speeds, yaw_rates, indexing="ij"))
-        kept = np.abs(v * omega) <= self.lateral * (1.0 + ROUNDING)
-        return np.column_stack((v, omega))[kept]
+    def _within(
+        self, speeds: NDArray[np.float64], yaw_rates: NDArray[np.float64], aside: tuple[float, ...]
+    ) -> NDArray[np.float64]:
+        """Return all pairs of speeds and yaw rates; sideways, with the first, middle and last of each."""
+        rows: list[NDArray[np.float64]] = []
+        for vy in (part * self.sideways for part in aside):
+            if vy == 0.0 and rows and not rows[-1][:, 1].any():
+                continue  # the robot does not drive sideways
+            few = slice(None) if vy == 0.0 else [0, len(speeds) // 2, -1]
+            v, omega = (axis.ravel() for axis in np.meshgrid(speeds[few], yaw_rates[few], indexing="ij"))
+            rows.append(np.column_stack((v, np.full(len(v), vy), omega)))
+        all_rows = np.vstack(rows)
+        driven = np.hypot(all_rows[:, 0], all_rows[:, 1]) * np.abs(all_rows[:, 2])
+        kept: NDArray[np.float64] = all_rows[driven <= self.lateral * (1.0 + ROUNDING)]
+        return kept

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A drive as commands at a fixed rate, and as the table t, cmd_v, cmd_omega."""
+"""A drive as commands at a fixed rate, and as the table t, cmd_v, cmd_omega, or with cmd_vx and cmd_vy."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ COMMAND_RATE = 20.0  # Hz; drives stop where a command is older than a fraction 
 def command_inputs(drive: Excitation) -> Inputs:
     """Return the commands at 20 Hz from time zero on; the last one is to stand still."""
     step = 1.0 / COMMAND_RATE
-    lead = np.zeros((round(LEAD / step), 2))
-    rows = np.vstack((lead, command_periods(drive.moves, step), np.zeros((1, 2))))
-    v, omega = np.ascontiguousarray(rows.T)
-    return Inputs(t=np.arange(len(rows), dtype=np.float64) * step, v=v, vy=np.zeros_like(v), omega=omega)
+    lead = np.zeros((round(LEAD / step), 3))
+    rows = np.vstack((lead, command_periods(drive.moves, step), np.zeros((1, 3))))
+    v, vy, omega = np.ascontiguousarray(rows.T)
+    return Inputs(t=np.arange(len(rows), dtype=np.float64) * step, v=v, vy=vy, omega=omega)
 
 
 def write_commands(path: Path, drive: Excitation) -> Path:
@@ -31,7 +31,10 @@ def write_commands(path: Path, drive: Excitation) -> Path:
         OutputError: the file cannot be written.
     """
     commands = command_inputs(drive)
-    rows = zip(commands.t.tolist(), commands.v.tolist(), commands.omega.tolist(), strict=True)
-    text = "".join(f"{t:.3f},{v:.6g},{omega:.6g}\n" for t, v, omega in rows)
-    write_text_whole(path, "t,cmd_v,cmd_omega\n" + text)
+    columns = {"cmd_v": commands.v, "cmd_omega": commands.omega}
+    if drive.space.sideways > 0.0:
+        columns = {"cmd_vx": commands.v, "cmd_vy": commands.vy, "cmd_omega": commands.omega}
+    rows = zip(commands.t.tolist(), *(column.tolist() for column in columns.values()), strict=True)
+    text = "".join(f"{t:.3f}," + ",".join(f"{value:.6g}" for value in row) + "\n" for t, *row in rows)
+    write_text_whole(path, ",".join(("t", *columns)) + "\n" + text)
     return path

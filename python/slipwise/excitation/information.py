@@ -55,9 +55,15 @@ def move_jacobians(knowledge: Knowledge, moves: Sequence[Move], first: float = 0
 
 
 def prediction_jacobians(knowledge: Knowledge, commands: Floats, horizon: float) -> Floats:
-    """Return the derivatives [N, 3, parameters] of predictions from rest under held commands [N, 2]."""
+    """Return the derivatives [N, 3, parameters] of predictions from rest.
+
+    They are under held commands (v, vy, omega) [N, 3].
+    """
     return np.array(
-        [move_jacobians(knowledge, [Move(v, omega, horizon, 0.0)])[0][0] for v, omega in commands.tolist()]
+        [
+            move_jacobians(knowledge, [Move(v, omega, horizon, 0.0, vy)])[0][0]
+            for v, vy, omega in commands.tolist()
+        ]
     )
 
 
@@ -111,13 +117,13 @@ class WorstPrediction:
 
 
 def _history(knowledge: Knowledge, moves: Sequence[Move], starts: Floats) -> _core.InputHistory:
-    rows = [(float(starts[0]) - REST, 0.0, 0.0)]
+    rows = [(float(starts[0]) - REST, 0.0, 0.0, 0.0)]
     for move, begin in zip(moves, starts.tolist(), strict=False):
-        rows.append((begin, move.v, move.omega))
+        rows.append((begin, move.v, move.vy, move.omega))
         if move.pause > 0.0:
-            rows.append((begin + move.hold, 0.0, 0.0))
-    t, v, omega = (np.ascontiguousarray(column) for column in np.array(rows).T)
-    return knowledge.driven(_core.InputHistory(t, v, np.zeros_like(v), omega))
+            rows.append((begin + move.hold, 0.0, 0.0, 0.0))
+    t, v, vy, omega = (np.ascontiguousarray(column) for column in np.array(rows).T)
+    return knowledge.driven(_core.InputHistory(t, v, vy, omega))
 
 
 def _jacobian(knowledge: Knowledge, history: _core.InputHistory, begin: float, end: float) -> Floats:

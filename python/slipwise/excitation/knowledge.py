@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.excitation.command_space import CommandSpace
+from slipwise.models.axes import axes_of
 from slipwise.models.model import Model
 
 Floats = NDArray[np.float64]
@@ -28,6 +29,7 @@ class Knowledge:
     covariance: Floats  # [parameters, parameters] that a drive is to shrink
     spread: Floats  # [parameters, parameters] of the robots that may turn up, the slip disturbance included
     limits: _core.CommandLimits | None = None  # of the drive, in front of its lag
+    sideways: bool = False  # whether it is commanded sideways, too
     #: Robots that may turn up, where these are of several kinds: each kind's weight and knowledge.
     kinds: tuple[tuple[float, Knowledge], ...] = ()
 
@@ -80,6 +82,6 @@ def knowledge_of(model: Model) -> Knowledge:
     model.refuse_throttle("designed drives")
     model.refuse_heading("designed drives")
     body = model.body
-    return Knowledge(
-        body.motion, body.mean, body.covariance, body.covariance_over(SPREAD_SECONDS), body.limits
-    )
+    spread = body.covariance_over(SPREAD_SECONDS)
+    sideways = axes_of(body).sideways
+    return Knowledge(body.motion, body.mean, body.covariance, spread, body.limits, sideways)

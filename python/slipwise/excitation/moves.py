@@ -27,6 +27,7 @@ class Move:
     omega: float  # rad/s
     hold: float  # s
     pause: float  # s
+    vy: float = 0.0  # m/s, to the left, of a robot that drives sideways
 
     @property
     def seconds(self) -> float:
@@ -40,25 +41,29 @@ def figure_of(
     """Return the moves of a figure: each command out and back, then each one's mirror image out and back.
 
     Args:
-        commands: speed [m/s] and yaw rate [rad/s], not negative; one or two.
+        commands: speed [m/s] and yaw rate [rad/s], not negative; one or two. Where a sideways speed [m/s]
+            stands between them, it changes its sign with the yaw rate: so does its mirror image.
         order: one of ORDERS.
         hold: how long each command is held [s].
         pause: how long the robot stands after it [s].
     """
     return [
-        Move(a * v + 0.0, b * omega + 0.0, hold, pause)
+        Move(a * v + 0.0, b * omega + 0.0, hold, pause, b * sum(vy) + 0.0)
         for pair in (order[:2], order[2:])
-        for v, omega in commands
+        for v, *vy, omega in commands
         for a, b in pair
     ]
 
 
 def command_periods(moves: Sequence[Move], period: float) -> Floats:
-    """Return the moves as commands [K, 2], each for one period [s], of which hold and pause are multiples."""
-    rows: list[Floats] = [np.zeros((0, 2))]
+    """Return the moves as commands (v, vy, omega) [K, 3], each for one period [s].
+
+    Hold and pause are multiples of it.
+    """
+    rows: list[Floats] = [np.zeros((0, 3))]
     for move in moves:
-        rows.append(np.tile((move.v, move.omega), (round(move.hold / period), 1)))
-        rows.append(np.zeros((round(move.pause / period), 2)))
+        rows.append(np.tile((move.v, move.vy, move.omega), (round(move.hold / period), 1)))
+        rows.append(np.zeros((round(move.pause / period), 3)))
     return np.vstack(rows)
 
 

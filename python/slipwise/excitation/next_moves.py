@@ -61,8 +61,8 @@ def choose_next_moves(
     Args:
         knowledge: what was learned.
         prior_std: [parameters] standard deviations before anything was learned.
-        commands: speed [m/s] and yaw rate [rad/s] of moves and predictions, [N, 2]; of moves that help alike
-            the first counts.
+        commands: (v [m/s], vy [m/s], omega [rad/s]) of moves and predictions, [N, 3]; of moves that help
+            alike the first counts.
         count: moves.
 
     Raises:
@@ -127,13 +127,13 @@ class _Search:
         for place in order:
             before, known = known, known + self._gains[place]
             gain = np.diag(np.linalg.inv(before)) / np.diag(np.linalg.inv(known))
-            v, omega = commands[place].tolist()
+            v, vy, omega = commands[place].tolist()
             teaches = knowledge.names[int(np.argmax(gain))]
-            moves.append(NextMove(Move(v, omega, HOLD, PAUSE), *self.judge.sigmas(known), teaches))
+            moves.append(NextMove(Move(v, omega, HOLD, PAUSE, vy), *self.judge.sigmas(known), teaches))
         return NextMoves(tuple(moves), self.judge.sigmas(self._known), prior)
 
 
 def _information_of(knowledge: Knowledge, command: list[float]) -> Floats:
     """What one move with this command tells, from rest."""
-    v, omega = command
-    return information(move_jacobians(knowledge, [Move(v, omega, HOLD, PAUSE)])[0], PoseStd())
+    v, vy, omega = command
+    return information(move_jacobians(knowledge, [Move(v, omega, HOLD, PAUSE, vy)])[0], PoseStd())

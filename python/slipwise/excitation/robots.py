@@ -25,18 +25,19 @@ class Robots:
     """Drawn robots, each a program of the core."""
 
     programs: tuple[_core.RolloutProgram, ...]
+    sideways: bool = False  # whether they are commanded sideways, too
 
     def paths(self, commands: Floats) -> Floats:
-        """Return where each robot comes under one sequence of commands [K, 2]: [S, 3, K] m, m, rad."""
-        return np.stack([_rolled(program, commands[None])[:, :, 0] for program in self.programs])
+        """Return where each robot comes under one sequence of commands [K, 3]: [S, 3, K] m, m, rad."""
+        return np.stack([self._rolled(program, commands[None])[:, :, 0] for program in self.programs])
 
     def box(self, commands: Floats) -> Floats:
-        """Return least and largest x, y [4] m that any robot reaches under a sequence of commands [K, 2]."""
+        """Return least and largest x, y [4] m that any robot reaches under a sequence of commands [K, 3]."""
         boxes, _ = self._boxes(commands[None], np.full(2, np.inf))
         return np.asarray(boxes[0])
 
     def inside(self, commands: Floats, room: Floats) -> tuple[NDArray[np.bool_], Floats]:
-        """Return which sequences of commands [N, K, 2] keep the robots within a room, and where they end.
+        """Return which sequences of commands [N, K, 3] keep the robots within a room, and where they end.
 
         Args:
             commands: what every robot is commanded.
@@ -48,12 +49,22 @@ class Robots:
         box, end = self._boxes(commands, room)
         return fits(box, room), end
 
+    def _rolled(self, program: _core.RolloutProgram, commands: Floats) -> Floats:
+        """Return the path [3, K, N] from rest in the origin."""
+        rollouts, periods = commands.shape[:2]
+        path = np.empty((3, periods, rollouts))
+        start = _core.StartList(np.zeros((1, 6)), np.zeros((1, 0, 3)))
+        level = _core.instruction_levels()[-1]
+        given = commands if self.sideways else commands[..., ::2]
+        _core.rollout_batch(program, given, start, path, None, None, None, 1, level, None)
+        return path
+
     def _boxes(self, commands: Floats, room: Floats) -> tuple[Floats, Floats]:
         """Return boxes [N, 4] and farthest ends [N]; a sequence that leaves the room is not followed on."""
         box, end = np.zeros((len(commands), 4)), np.zeros(len(commands))  # all begin at the start
         left = np.arange(len(commands))
         for program in self.programs:
-            path = _rolled(program, commands[left])
+            path = self._rolled(program, commands[left])
             lowest, highest = path[:2].min(axis=1), path[:2].max(axis=1)
             box[left, ::2] = np.minimum(box[left, ::2], lowest.T)
             box[left, 1::2] = np.maximum(box[left, 1::2], highest.T)
@@ -112,22 +123,15 @@ def edge_radius(size: int) -> float:
 
 
 def _together(parts: Iterable[Robots]) -> Robots:
-    return Robots(tuple(program for part in parts for program in part.programs))
+    robots = list(parts)
+    programs = tuple(program for part in robots for program in part.programs)
+    return Robots(programs, any(part.sideways for part in robots))
 
 
 def _robots(knowledge: Knowledge, drawn: Floats) -> Robots:
     values, vectors = np.linalg.eigh(knowledge.spread)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     parameters = knowledge.mean + drawn @ root.T
-    motion, limits, level = knowledge.motion, knowledge.limits, Start().ground
-    return Robots(tuple(_core.RolloutProgram(motion, row, PERIOD, level, limits, None) for row in parameters))
-
-
-def _rolled(program: _core.RolloutProgram, commands: Floats) -> Floats:
-    """Return the path [3, K, N] from rest in the origin."""
-    rollouts, periods = commands.shape[:2]
-    path = np.empty((3, periods, rollouts))
-    start = _core.StartList(np.zeros((1, 5)), np.zeros((1, 0, 2)))
-    level = _core.instruction_levels()[-1]
-    _core.rollout_batch(program, commands, start, path, None, None, None, 1, level, None)
-    return path
+    motion, sideways = knowledge.motion, knowledge.sideways
+    setting = (PERIOD, Start().ground, knowledge.limits, None, sideways)
+    return Robots(tuple(_core.RolloutProgram(motion, row, *setting) for row in parameters), sideways)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import ModelError
+from slipwise.models.axes import axes_of
 from slipwise.models.model import Model
 from slipwise.prediction import student_at
 
@@ -52,7 +53,7 @@ def shifts(model: Model) -> str:
 
 def noise(model: Model) -> str:
     """Return the slip noise as constants, and how it grows along a path."""
-    learned = model.noise
+    learned, sideways = model.noise, axes_of(model).sideways
     scalars = {
         "TURN_RADIUS": (_core.TURN_RADIUS, "[m] a turn of 1 rad slips like driving so far"),
         "STRAIGHT_RADIUS": (
@@ -76,6 +77,9 @@ def noise(model: Model) -> str:
             "NOISE_MOTION": _numbers(learned.psd_motion),
             "NOISE_FRACTION": _numbers(learned.fraction),
             "NOISE_SCALARS": "\n".join(lines),
+            "DISTANCE": "SLIPWISE_MATH(hypot)(mean.v, mean.vy)"
+            if sideways
+            else "SLIPWISE_MATH(fabs)(mean.v)",
         },
     )
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from importlib.resources import files
 
 from slipwise import _core
@@ -10,6 +12,7 @@ from slipwise.export.actuator import actuator_of
 from slipwise.export.c_covariance import covariance, noise, shifts
 from slipwise.export.c_limits import cursor, how_known, limits
 from slipwise.export.origin import one_line
+from slipwise.models.axes import axes_of
 from slipwise.models.model import Model
 
 _TEMPLATE = "model_template.h"
@@ -22,13 +25,20 @@ _QUANTITIES = {
     "kappa": "kappa",
     "gx": "gx",
     "gy": "gy",
+    "Vy": "vy",
+    "abs(Vy)": "abs_vy",
+    "V3": "third",
 }
 _MADE = {
     "abs_v": "SLIPWISE_MATH(fabs)(v)",
     "abs_w": "SLIPWISE_MATH(fabs)(w)",
     "sgn_v": "SLIPWISE_R((v > 0) - (v < 0))",
     "kappa": "w * v / (v * v + SLIPWISE_R({regular}))",
+    "abs_vy": "SLIPWISE_MATH(fabs)(vy)",
+    "third": "vy * (3 * v * v - vy * vy) / (v * v + vy * vy + SLIPWISE_R({regular}))",
 }
+#: Parts of the templates that only the header of a robot that drives sideways has.
+_SIDEWAYS = re.compile(r"@SIDE\{(.*?)\}@", re.DOTALL)
 _PROBE = 2.0**-30  # m/s, far below the speed that regularises the curvature
 
 
@@ -61,7 +71,7 @@ def c_header(model: Model, origin: list[str]) -> str:
     }
     for name, text in parts.items():
         template = template.replace(f"@{name}@", text)
-    return template
+    return _SIDEWAYS.sub(r"\1" if axes_of(model).sideways else "", template)
 
 
 def _define(name: str, value: float, comment: str) -> str:
@@ -162,19 +172,20 @@ def _slip(model: Model) -> list[str]:
         for name, text in _MADE.items()
         if name in used
     ]
-    given = [
-        f"(void){name};" for name in ("v", "w", "gx", "gy") if not any(name in line.split() for line in made)
-    ]
+    sideways = axes_of(model).sideways
+    names = ("v", *(("vy",) if sideways else ()), "w", "gx", "gy")
+    given = [f"(void){name};" for name in names if not any(name in line.split() for line in made)]
     given += [] if at else ["(void)p;"]
-    return [*made, *given, *_parked(used), *sums]
+    return [*made, *given, *_parked(used, ("v", "w", *(("vy",) if sideways else ()))), *sums]
 
 
-def _parked(used: set[str]) -> list[str]:
+def _parked(used: set[str], moves: tuple[str, ...]) -> list[str]:
     """Return the lines that keep a parked robot from sliding down a slope."""
     slopes = sorted(used & {"gx", "gy"})
     if not slopes:
         return []
-    return ["if (!(v < 0 || v > 0 || w < 0 || w > 0)) {", *(f"  {name} = 0;" for name in slopes), "}"]
+    moving = " || ".join(f"{name} < 0 || {name} > 0" for name in moves)
+    return [f"if (!({moving})) {{", *(f"  {name} = 0;" for name in slopes), "}"]
 
 
 def _factors(term: str) -> list[str]:
@@ -188,13 +199,18 @@ def _factors(term: str) -> list[str]:
 
 
 def _coefficients(basis: _core.Basis) -> list[float]:
-    """Return the number that each term starts with: its value where every quantity but the curvature is 1."""
-    curvature = float(_curvature().features(_core.SlipState(1.0, 1.0, 0.0, 0.0))[0])
-    values = basis.features(_core.SlipState(1.0, 1.0, 1.0, 1.0)).tolist()
+    """Return the number that each term starts with: its value where all quantities that it has are 1."""
+    at_one = _core.SlipState(1.0, 1.0, 1.0, 1.0, 1.0)
+    others = {
+        "kappa": _core.Basis("curvature", ["kappa"], [], []),
+        "third": _core.Basis("v3", ["V3"], [], []),
+    }
+    known = {name: float(other.features(at_one)[0]) for name, other in others.items()}
     terms = (*basis.lon, *basis.lat, *basis.ang)
-    plain = [
-        value / curvature ** _factors(term).count("kappa") for value, term in zip(values, terms, strict=True)
-    ]
+    plain = []
+    for value, term in zip(basis.features(at_one).tolist(), terms, strict=True):
+        factors = _factors(term)
+        plain.append(value / math.prod(number ** factors.count(name) for name, number in known.items()))
     return [1.0 if abs(value - 1.0) < 1e-12 else value for value in plain]
 
 

@@ -33,11 +33,12 @@ static inline slipwise_cursor slipwise_cursor_at(const slipwise_commands *comman
 }
 
 static inline slipwise_drive slipwise_held(const slipwise_cursor *cursor) {
-  slipwise_drive held = {0, 0}; /* at rest before the first command */
+  slipwise_drive held = {0,@SIDE{ 0,}@ 0}; /* at rest before the first command */
   if (cursor->next > 0) {
     const slipwise_command *command = slipwise_command_at(cursor->commands, cursor->next - 1);
     held.v = command->v;
-    held.omega = command->omega;
+@SIDE{    held.vy = command->vy;
+}@    held.omega = command->omega;
   }
   return held;
 }

@@ -87,7 +87,8 @@ static inline slipwise_drive slipwise_from_sides(const slipwise_real sides[2]) {
   slipwise_drive twist;
   twist.v = (sides[0] + sides[1]) / 2;
   twist.omega = (sides[1] - sides[0]) / SLIPWISE_LIMITS_WHEEL_SEPARATION;
-  return twist;
+@SIDE{  twist.vy = 0;
+}@  return twist;
 }
 
 /* The commands of one channel as the drive sees them: limited, piece by piece, and delayed. */
@@ -110,7 +111,7 @@ static inline slipwise_real slipwise_told_next(const slipwise_cursor *cursor) {
 
 /* The part of the command that remains once all ramps are over. */
 static inline slipwise_drive slipwise_goal(const slipwise_cursor *cursor) {
-  slipwise_drive goal;
+  slipwise_drive goal = {0,@SIDE{ 0,}@ 0};
   goal.v = slipwise_limited(&slipwise_lanes[0], cursor->commanded.v);
   goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->commanded.omega);
 #if SLIPWISE_LIMITS_SIDES
@@ -122,12 +123,13 @@ static inline slipwise_drive slipwise_goal(const slipwise_cursor *cursor) {
     goal = slipwise_from_sides(sides);
   }
 #endif
-  return goal;
+@SIDE{  goal.vy = cursor->commanded.vy; /* passes as it is */
+}@  return goal;
 }
 
 /* No ramp takes longer [s]; 0 where all are over. */
 static inline slipwise_real slipwise_seconds_left(const slipwise_cursor *cursor) {
-  slipwise_drive goal;
+  slipwise_drive goal = {0,@SIDE{ 0,}@ 0};
   slipwise_real left, other;
   goal.v = slipwise_limited(&slipwise_lanes[0], cursor->commanded.v);
   goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->commanded.omega);
@@ -162,7 +164,7 @@ static inline void slipwise_reach(slipwise_cursor *cursor, slipwise_real end) {
   const slipwise_drive asked = slipwise_asked(cursor);
   const int v = !cursor->v_reached && end > cursor->at.v_until;
   const int omega = !cursor->omega_reached && end > cursor->at.omega_until;
-  slipwise_drive goal;
+  slipwise_drive goal = {0,@SIDE{ 0,}@ 0};
   goal.v = slipwise_limited(&slipwise_lanes[0], cursor->commanded.v);
   goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->commanded.omega);
   if (v) {
@@ -187,7 +189,7 @@ static inline void slipwise_reach(slipwise_cursor *cursor, slipwise_real end) {
 }
 
 static inline slipwise_drive slipwise_piece_mean(slipwise_cursor *cursor, slipwise_real taken) {
-  slipwise_drive mean;
+  slipwise_drive mean = {0,@SIDE{ 0,}@ 0};
   mean.v = slipwise_ramp_mean(&slipwise_lanes[0], &cursor->speed, cursor->commanded.v, cursor->piece, taken);
   mean.omega = slipwise_ramp_mean(&slipwise_lanes[1], &cursor->yaw_rate, cursor->commanded.omega, cursor->piece, taken);
 #if SLIPWISE_LIMITS_SIDES
@@ -201,7 +203,8 @@ static inline slipwise_drive slipwise_piece_mean(slipwise_cursor *cursor, slipwi
     mean = slipwise_from_sides(sides);
   }
 #endif
-  return mean;
+@SIDE{  mean.vy = cursor->commanded.vy;
+}@  return mean;
 }
 
 /* The next command is commanded. Pieces divide the time that the one before was held. */
@@ -213,7 +216,8 @@ static inline void slipwise_tell(slipwise_cursor *cursor) {
   }
   cursor->change = command->t;
   cursor->commanded.v = command->v;
-  cursor->commanded.omega = command->omega;
+@SIDE{  cursor->commanded.vy = command->vy;
+}@  cursor->commanded.omega = command->omega;
   ++cursor->next;
   parts = SLIPWISE_MATH(ceil)(hold / SLIPWISE_RAMP_PIECE - SLIPWISE_SAME_STEP);
   cursor->piece = hold / (parts < 1 ? SLIPWISE_R(1) : parts);
@@ -265,13 +269,14 @@ static inline int slipwise_acts(const slipwise_cursor *cursor) { return cursor->
  * measured, what keeps that. */
 static inline void slipwise_begin(slipwise_cursor *cursor, slipwise_real first) {
   const slipwise_drive asked = slipwise_asked(cursor);
-  slipwise_drive before = {0, 0};
+  slipwise_drive before = {0,@SIDE{ 0,}@ 0};
   slipwise_real sides[2];
   cursor->v_reached = !cursor->at.measured || first > cursor->at.v_until;
   cursor->omega_reached = !cursor->at.measured || first > cursor->at.omega_until;
   if (cursor->at.measured && cursor->v_reached) {
     before.v = asked.v;
-  }
+@SIDE{    before.vy = asked.vy;
+}@  }
   if (cursor->at.measured && cursor->omega_reached) {
     before.omega = asked.omega;
   }

@@ -6,7 +6,7 @@
  *   slipwise_command slots[64];
  *   slipwise_commands commands;
  *   slipwise_commands_init(&commands, slots, 64);
- *   slipwise_command_push(&commands, 0.0f, 1.0f, 0.3f);         // t [s], v [m/s], omega [rad/s]; held from t on
+ *   slipwise_command_push(&commands, 0.0f, 1.0f,@SIDE{ 0.2f,}@ 0.3f);         // t [s], v [m/s],@SIDE{ vy [m/s],}@ omega [rad/s]; held from t on
  *   slipwise_window window = {0.0f, 5.0f, 0, 0.0f, 0.0f};       // from 0 s to 5 s, drive follows from the commands
  *   slipwise_pose pose;
  *   if (slipwise_predict(&commands, &window, &pose, 0) == SLIPWISE_OK) { ... pose.x, pose.y, pose.yaw ... }
@@ -56,7 +56,7 @@ enum slipwise_status {
 };
 
 typedef struct {
-  slipwise_real t, v, omega; /* [s], [m/s], [rad/s] */
+  slipwise_real t, v,@SIDE{ vy,}@ omega; /* [s], [m/s],@SIDE{ [m/s] to the left,}@ [rad/s] */
 } slipwise_command;
 
 /* A ring of commands in order of time, in memory of the caller. It must reach back by the delay, and by eight lags
@@ -68,7 +68,7 @@ typedef struct {
 } slipwise_commands;
 
 typedef struct {
-  slipwise_real v, omega; /* what the wheels do, before slip [m/s], [rad/s] */
+  slipwise_real v,@SIDE{ vy,}@ omega; /* what the wheels do, before slip [m/s],@SIDE{ [m/s],}@ [rad/s] */
 } slipwise_drive;
 
 typedef struct {
@@ -96,9 +96,9 @@ static inline const slipwise_command *slipwise_command_at(const slipwise_command
 /* Adds a command, and drops the oldest where the ring is full. Returns 0, or -1 where it is refused: it is not later
  * than the last one, or not finite. */
 static inline int slipwise_command_push(slipwise_commands *commands, slipwise_real t, slipwise_real v,
-                                        slipwise_real omega) {
+                                        @SIDE{slipwise_real vy, }@slipwise_real omega) {
   slipwise_command *slot;
-  if (commands->capacity < 1 || !isfinite(t) || !isfinite(v) || !isfinite(omega)) {
+  if (commands->capacity < 1 || !isfinite(t) || !isfinite(v) ||@SIDE{ !isfinite(vy) ||}@ !isfinite(omega)) {
     return -1;
   }
   if (commands->count > 0 && !(t > slipwise_command_at(commands, commands->count - 1)->t)) {
@@ -112,7 +112,8 @@ static inline int slipwise_command_push(slipwise_commands *commands, slipwise_re
   }
   slot->t = t;
   slot->v = v;
-  slot->omega = omega;
+@SIDE{  slot->vy = vy;
+}@  slot->omega = omega;
   return 0;
 }
 
@@ -154,7 +155,7 @@ static inline slipwise_model slipwise_model_shifted(const slipwise_real *by) {
 static inline void slipwise_slip(const slipwise_model *model, slipwise_drive drive, slipwise_real gx,
                                  slipwise_real gy, slipwise_real rate[3]) {
   const slipwise_real *const p = model->p;
-  const slipwise_real v = drive.v, w = drive.omega;
+  const slipwise_real v = drive.v,@SIDE{ vy = drive.vy,}@ w = drive.omega;
 @SLIP@
 }
 
@@ -269,7 +270,7 @@ typedef struct {
   const slipwise_model *model;
   const slipwise_window *window;
   slipwise_cursor speed_input, yaw_input;
-  slipwise_channel speed, yaw_rate;
+  slipwise_channel speed, yaw_rate@SIDE{, side}@;
   slipwise_path path;
   slipwise_noise *noise; /* NULL where it is not asked for */
 } slipwise_walk;
@@ -281,7 +282,8 @@ static inline void slipwise_advance(slipwise_walk *walk, slipwise_drive mean, sl
   int i;
   slipwise_slip(walk->model, mean, walk->window->gx, walk->window->gy, tangent);
   tangent[0] += mean.v;
-  tangent[2] += mean.omega;
+@SIDE{  tangent[1] += mean.vy;
+}@  tangent[2] += mean.omega;
   for (i = 0; i < 3; ++i) {
     tangent[i] *= duration;
   }
@@ -296,10 +298,12 @@ static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, in
   const slipwise_real speed = slipwise_held(&walk->speed_input).v, yaw = slipwise_held(&walk->yaw_input).omega;
   slipwise_drive mean;
   mean.v = walk->speed.fast + walk->speed.slow;
-  mean.omega = walk->yaw_rate.fast + walk->yaw_rate.slow;
+@SIDE{  mean.vy = walk->side.fast + walk->side.slow;
+}@  mean.omega = walk->yaw_rate.fast + walk->yaw_rate.slow;
   if (!walk->window->drive || slipwise_acts(&walk->speed_input)) {
     mean.v = slipwise_channel_step(&walk->speed, &walk->model->speed, speed, duration) / duration;
-  }
+@SIDE{    mean.vy = slipwise_channel_step(&walk->side, &walk->model->speed, slipwise_held(&walk->speed_input).vy, duration) / duration;
+}@  }
   if (!walk->window->drive || slipwise_acts(&walk->yaw_input)) {
     mean.omega = slipwise_channel_step(&walk->yaw_rate, &walk->model->yaw, yaw, duration) / duration;
   }
@@ -344,7 +348,8 @@ static inline slipwise_start slipwise_start_of(const slipwise_model *model, cons
   slipwise_start start;
   start.measured = drive != 0;
   start.keeping.v = drive ? slipwise_keeping(&model->speed, drive->v) : SLIPWISE_R(0);
-  start.keeping.omega = drive ? slipwise_keeping(&model->yaw, drive->omega) : SLIPWISE_R(0);
+@SIDE{  start.keeping.vy = drive ? slipwise_keeping(&model->speed, drive->vy) : SLIPWISE_R(0);
+}@  start.keeping.omega = drive ? slipwise_keeping(&model->yaw, drive->omega) : SLIPWISE_R(0);
   start.v_until = known - model->delay_v;
   start.omega_until = known - model->delay_omega;
   return start;
@@ -353,7 +358,7 @@ static inline slipwise_start slipwise_start_of(const slipwise_model *model, cons
 static inline int slipwise_is_bad(const slipwise_window *window) {
   return !isfinite(window->start) || !isfinite(window->end) || !isfinite(window->gx) || !isfinite(window->gy) ||
          !(window->end >= window->start) || !(window->end - window->start <= SLIPWISE_LONGEST_WINDOW) ||
-         (window->drive && (!isfinite(window->drive->v) || !isfinite(window->drive->omega)));
+         (window->drive && (!isfinite(window->drive->v) ||@SIDE{ !isfinite(window->drive->vy) ||}@ !isfinite(window->drive->omega)));
 }
 
 /* One pass with one model; `walk` is what it carried along. */
@@ -383,12 +388,15 @@ static inline int slipwise_run(const slipwise_model *model, const slipwise_comma
   walk->speed_input = slipwise_cursor_at(commands, &at, model->delay_v, early, window->end);
   walk->yaw_input = slipwise_cursor_at(commands, &at, model->delay_omega, early, window->end);
   walk->speed = slipwise_settled(&model->speed, slipwise_held(&walk->speed_input).v);
-  walk->yaw_rate = slipwise_settled(&model->yaw, slipwise_held(&walk->yaw_input).omega);
+@SIDE{  walk->side = slipwise_settled(&model->speed, slipwise_held(&walk->speed_input).vy);
+}@  walk->yaw_rate = slipwise_settled(&model->yaw, slipwise_held(&walk->yaw_input).omega);
   slipwise_cover(walk, early, known, 0);
   if (window->drive) {
     slipwise_measured(&walk->speed, &model->speed, window->drive->v, slipwise_held(&walk->speed_input).v,
                       slipwise_acts(&walk->speed_input));
-    slipwise_measured(&walk->yaw_rate, &model->yaw, window->drive->omega, slipwise_held(&walk->yaw_input).omega,
+@SIDE{    slipwise_measured(&walk->side, &model->speed, window->drive->vy, slipwise_held(&walk->speed_input).vy,
+                      slipwise_acts(&walk->speed_input));
+}@    slipwise_measured(&walk->yaw_rate, &model->yaw, window->drive->omega, slipwise_held(&walk->yaw_input).omega,
                       slipwise_acts(&walk->yaw_input));
   }
   if (start < known) { /* poses are stamped late: what the robot did meanwhile was measured */
@@ -406,7 +414,8 @@ static inline void slipwise_results(const slipwise_walk *walk, slipwise_pose *po
   *pose = walk->path.pose;
   if (drive) {
     drive->v = walk->speed.fast + walk->speed.slow;
-    drive->omega = walk->yaw_rate.fast + walk->yaw_rate.slow;
+@SIDE{    drive->vy = walk->side.fast + walk->side.slow;
+}@    drive->omega = walk->yaw_rate.fast + walk->yaw_rate.slow;
   }
 }
 

@@ -54,7 +54,7 @@ static inline void slipwise_by_tangent(const slipwise_path *before, const slipwi
 static inline void slipwise_noise_add(slipwise_noise *noise, const slipwise_path *before, const slipwise_path *after,
                                       const slipwise_real tangent[3], slipwise_drive mean, slipwise_real duration) {
   const slipwise_real x = after->pose.x - before->pose.x, y = after->pose.y - before->pose.y;
-  const slipwise_real distance = SLIPWISE_MATH(fabs)(mean.v) * duration;
+  const slipwise_real distance = @DISTANCE@ * duration;
   const slipwise_real turn = SLIPWISE_MATH(fabs)(mean.omega) * duration;
   const slipwise_real wheels = distance + SLIPWISE_TURN_RADIUS * turn;
   slipwise_real motion[3], by[3][3];

@@ -17,6 +17,7 @@ from slipwise.export.options import ExportOptions
 from slipwise.export.origin import origin_lines
 from slipwise.export.parameter_file import ParameterFile, Value
 from slipwise.export.robot_localization import robot_localization
+from slipwise.models.axes import refuse_sideways
 from slipwise.models.body_force import without_force
 from slipwise.models.model import Model
 
@@ -37,6 +38,7 @@ class Target:
     name: str
     file_name: str
     make: Callable[[Model, ExportOptions, list[str]], Exported]
+    sideways: bool = False  # whether the file can hold a sideways speed
 
 
 def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callable[..., Exported]:
@@ -67,7 +69,7 @@ TARGETS = (
     Target("autoware", "autoware.param.yaml", _parameters(autoware)),
     Target("px4", "px4.params", _firmware(px4)),
     Target("ardupilot", "ardupilot.param", _firmware(ardupilot)),
-    Target("c-header", "model.h", _c_header),
+    Target("c-header", "model.h", _c_header, sideways=True),
 )
 
 
@@ -102,7 +104,8 @@ def export_model(
     made = find_target(target)
     model = without_force(model)
     model.refuse_throttle("exported files")
-    model.refuse_sideways("exported files")
+    if not made.sideways:
+        refuse_sideways(model, f"files of {target}")
     if not force:
         refuse_bad_verdict(model)
     return made.make(model, options or ExportOptions(), origin_lines(model, name))

@@ -106,24 +106,25 @@ class MoveAdviser:
             kept = model.content.parameters[: len(knowledge.mean)]
             prior_std = np.array([each.prior_std for each in kept])
         else:
-            knowledge = prior_knowledge(CommandSpace(*np.abs(commands).max(axis=0).tolist()))
+            speed, _, yaw_rate = np.abs(commands).max(axis=0).tolist()
+            knowledge = prior_knowledge(CommandSpace(speed, yaw_rate))
             prior_std = np.sqrt(np.diag(knowledge.covariance))
         yield
         return (yield from choose_next_moves(knowledge, prior_std, commands, COUNT))
 
     def _commands(self, model: Model) -> Floats:
-        """Return what the robot may be asked to do [N, 2]: no faster and no tighter than it was driven."""
+        """Return what the robot may be asked, [N, 3] (v, vy, omega): no faster, no tighter than it drove."""
         span = model.content.range
         if max(map(abs, span.speed)) < SLOWEST or self._turning.curvature == 0.0:
             raise _NotYetError("drive a slow curve first: the robot has not driven and turned yet")
         limits = limits_of(model)
         found = CommandSpace(limits.speed, limits.yaw_rate).grid(LEVELS)
-        v, omega = np.abs(found).T
+        v, _, omega = np.abs(found).T
         kept = (omega <= 1.001 * self._turning.curvature * np.maximum(v, SLOWEST)) & (v + omega > 0.0)
         if not self._reverse:
             kept &= found[:, 0] > REVERSE
         found = found[kept]
-        order = np.lexsort((np.abs(found[:, 1]), found[:, 0] < 0.0))  # forwards and straight first
+        order = np.lexsort((np.abs(found[:, 2]), found[:, 0] < 0.0))  # forwards and straight first
         return np.ascontiguousarray(found[order])
 
 

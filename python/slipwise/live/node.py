@@ -266,11 +266,12 @@ class LiveNode:
             return
         try:
             asked = json.loads(request.content)
-            rows = np.array(asked["commands"], dtype=np.float64).reshape(-1, 3)
             horizon = float(asked.get("horizon", AHEAD))
             if self._odometry is None:
                 raise ValueError("no pose was measured yet")
             learner = self._parts.learning.learner
+            rows = np.array(asked["commands"], dtype=np.float64)
+            rows = rows if rows.size else np.zeros((0, 1 + len(learner.axes)))
             self._publish(path_ahead(learner, self._odometry, rows, horizon=horizon, asked=True))
         except Exception as problem:  # the text comes from outside
             said.count("a prediction that cannot be made")
@@ -328,9 +329,11 @@ class LiveNode:
         newest = self._parts.intake.newest_input
         if newest is None or self._odometry is None:
             return None
-        held = np.array([[self._parts.intake.newest, newest.v, newest.omega]])
+        learner = self._parts.learning.learner
+        command = learner.axes.of_twist((newest.v, newest.vy, newest.omega))
+        held = np.array([[self._parts.intake.newest, *command]])
         try:
-            return path_ahead(self._parts.learning.learner, self._odometry, held, horizon=AHEAD)
+            return path_ahead(learner, self._odometry, held, horizon=AHEAD)
         except SlipwiseError:
             return None  # nothing was measured in this run yet
 

@@ -40,7 +40,7 @@ def path_ahead(
     Args:
         learner: predicts.
         odometry: the pose now.
-        commands: what the robot will be given, rows of (t [s], v [m/s], omega [rad/s]), [N, 3].
+        commands: what the robot will be given, rows of t [s] and the learner's `axes`.
         horizon: how far to predict [s].
         asked: whether a request asked for it.
 
@@ -48,12 +48,8 @@ def path_ahead(
         SettingsError: nothing was measured yet, or the commands or the horizon are impossible.
     """
     ahead = learner.predict(commands, horizon=horizon)
-    sensor = _core.Pose2(*learner.settings.sensor_extrinsics.pose)
-    start = _core.compose(_core.Pose2(*odometry.pose.tolist()), sensor)
-    placed = [
-        _core.compose(_core.compose(start, _core.Pose2(*pose)), _core.inverse(sensor)).vector()
-        for pose in ahead.poses.tolist()
-    ]
+    start = _core.Pose2(*odometry.pose.tolist())
+    placed = [_core.compose(start, _core.Pose2(*pose)).vector() for pose in ahead.poses.tolist()]
     return Path(
         t=np.concatenate(([ahead.start], ahead.t)),
         frame=odometry.frame,

@@ -202,18 +202,6 @@ class Model:
         section = self.content.car
         return None if section is None else core_car(section)
 
-    def refuse_sideways(self, what: str) -> None:
-        """Refuse a use that knows no sideways speed where the model's slip depends on it.
-
-        Raises:
-            ModelError: it does.
-        """
-        if self.motion.basis.sideways:
-            raise ModelError(
-                f"{what} know no sideways speed, and the slip of this model depends on it",
-                advice="calibrate with --basis full-linear-6 or another without Vy",
-            )
-
     def refuse_heading(self, what: str) -> None:
         """Refuse a use that knows no heading over the map where a force of the model depends on it.
 
@@ -339,6 +327,8 @@ class Model:
         for surface in content.get("surfaces", ()):
             if not surface["classes"]:
                 del surface["classes"]
+        if content["range"]["sideways"] is None:
+            del content["range"]["sideways"]
         if content["provenance"]["prior"] is None:
             del content["provenance"]["prior"]
         body = yaml.dump(content, Dumper=_DUMPER, sort_keys=False, width=120, default_flow_style=None)

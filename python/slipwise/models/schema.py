@@ -124,6 +124,7 @@ class Range(_Section):
 
     speed: Span  # of the inputs [m/s]
     yaw_rate: Span  # of the inputs [rad/s]
+    sideways: Span | None = None  # speed to the left, of inputs that have one [m/s]
     slope: NotNegative  # steepest roll or pitch [rad], 0 where it was not measured
     wheel_step: NotNegative = 0.0  # between wheel speeds [s], 0 where there were none
     body: MeasuredBody | None = None  # None: an older slipwise wrote the file, or another estimator learned

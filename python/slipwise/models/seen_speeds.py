@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 import warnings
+from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
 from slipwise.models.model import Model
 from slipwise.number_text import number_text
@@ -14,26 +14,24 @@ from slipwise.number_text import number_text
 FAR = 2.0  # times the largest speed of the log: beyond it, terms such as V^2 reach where no data were
 
 
-def warn_of_unseen_speeds(model: Model, v: ArrayLike, omega: ArrayLike, *, stacklevel: int) -> None:
+def warn_of_unseen_speeds(model: Model, commands: NDArray[Any], *, stacklevel: int) -> None:
     """Warn where inputs exceed `FAR` times the range of the model; throttle and steering have no speeds.
 
     Args:
         model: a learned model.
-        v: speeds [m/s].
-        omega: yaw rates [rad/s].
+        commands: [..., axes] speeds [m/s] first, yaw rates [rad/s] last.
         stacklevel: of the warning, as `warnings.warn` takes it: the caller's own line.
     """
     if model.car is not None:
         return
     span = model.content.range
     for name, values, seen, unit in (
-        ("speed", v, span.speed, "m/s"),
-        ("yaw rate", omega, span.yaw_rate, "rad/s"),
+        ("speed", commands[..., 0], span.speed, "m/s"),
+        ("yaw rate", commands[..., -1], span.yaw_rate, "rad/s"),
     ):
-        given = np.asarray(values)
-        if not given.size:
+        if not values.size:
             continue
-        most, known = max(float(given.max()), -float(given.min())), max(abs(end) for end in seen)
+        most, known = max(float(values.max()), -float(values.min())), max(abs(end) for end in seen)
         if most > FAR * known > 0.0:
             warnings.warn(
                 f"a {name} of {number_text(most)} {unit} is far beyond the {number_text(known)} {unit} that "

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise.models.axes import drive_axes
 from slipwise.models.model import Model
 from slipwise.planning.rollout import check_threads, checked_commands, uncertain
 from slipwise.planning.start import Start
@@ -32,7 +33,7 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
     Args:
         model: a learned model.
         commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`; of a car that is
-            commanded by throttle and steering, these.
+            commanded by throttle and steering, these; of a robot that drives sideways [N, K, 3] v, vy, omega.
         dt: time that a command is held [s].
         samples: how many futures to draw of each rollout.
         seed: where the random numbers start, at least 0.
@@ -40,10 +41,10 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
         threads: the results are the same bytes for any number.
 
     Raises:
-        ModelError: the model does not remember a surface ahead, or its slip depends on a sideways speed.
+        ModelError: the model does not remember a surface ahead.
         SettingsError: as for `rollout`, and when there is no sample or the seed is negative.
     """
-    numbers = np.asarray(checked_commands(commands, np.float64))
+    numbers = np.asarray(checked_commands(model, commands, np.float64))
     check_threads(threads)
     if samples < 1 or seed < 0:
         raise SettingsError(
@@ -55,7 +56,8 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
     result = np.empty((3, samples, periods, rollouts))
     try:
         widened = uncertain(model, dt, begin, dt * periods)
-        _core.sample_futures(widened, numbers, begin.in_core(rollouts), seed, result, threads)
+        starts = begin.in_core(rollouts, drive_axes(model))
+        _core.sample_futures(widened, numbers, starts, seed, result, threads)
     except (ValueError, TypeError) as problem:
         raise SettingsError(str(problem)) from problem
     return result

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise.models.axes import refuse_sideways
 from slipwise.models.model import Model
 from slipwise.planning.limits import Limits, limits_of
 
@@ -54,7 +55,7 @@ def curvature_map(
         SettingsError: too few speeds or curvatures.
     """
     model.refuse_throttle("maps of what can be held")
-    model.refuse_sideways("maps of what can be held")
+    refuse_sideways(model, "maps of what can be held")
     if speeds < 1 or curvatures < 2:
         raise SettingsError(
             "the map needs a speed and two curvatures", advice="such as speeds=20, curvatures=41"

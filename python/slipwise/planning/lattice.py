@@ -20,6 +20,7 @@ from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.files import write_text_whole
 from slipwise.ground import Grade
+from slipwise.models.axes import refuse_sideways
 from slipwise.models.model import Model
 from slipwise.planning.holdable import curvature_map
 from slipwise.planning.limits import Limits, limits_of
@@ -165,7 +166,7 @@ def _check(options: LatticeOptions) -> None:
 def _steady_planner(model: Model, options: LatticeOptions, limits: Limits) -> _core.TrajectoryPlanner:
     model.refuse_heading("lattices")
     model.refuse_throttle("lattices")
-    model.refuse_sideways("lattices")
+    refuse_sideways(model, "lattices")
     settings = _core.TrajectorySettings()
     settings.cruise = settings.end_speed = options.speed
     settings.longest, settings.straight_end, settings.guesses = options.longest, True, 3

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.ground import Grade, Pose, rise_of
+from slipwise.models.axes import SIDEWAYS, THROTTLE, TWIST, Axes, drive_axes
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
@@ -34,6 +35,7 @@ class Motion:
     grade: Grade | None = None  # of the ground in the frame of the reference; level where there is none
     slip_ahead: _core.MixedAhead | None = None  # on surfaces from the robot's place on, where it changes
     car: _core.CarCurves | None = None  # in front of all, where commands are throttle and steering
+    sideways: bool = False  # commands have a speed to the left, too
 
     def __repr__(self) -> str:
         return f"<Motion: {self.model.basis.name}, {len(self.parameters)} parameters>"
@@ -66,13 +68,12 @@ def learned_motions(  # noqa: PLR0913  (all but the first are options)
     of the surfaces from the robot's place on; `Controller.adopt` takes what is ahead as the robot goes.
 
     Raises:
-        ModelError: the model does not remember a surface ahead, or its slip depends on a sideways speed.
+        ModelError: the model does not remember a surface ahead.
         SettingsError: samples of slip on surfaces ahead are asked for.
     """
-    model.refuse_sideways("controllers")
     rng = np.random.Generator(np.random.PCG64(seed))
     model.refuse_heading("controllers")
-    slip = slip_ahead(terrain_ahead, model)
+    slip, sideways = slip_ahead(terrain_ahead, model), drive_axes(model).sideways
     if slip is not None:
         if samples:
             raise SettingsError(
@@ -80,13 +81,15 @@ def learned_motions(  # noqa: PLR0913  (all but the first are options)
                 where="samples",
                 advice="leave them out, or draw futures by `sample_futures`",
             )
-        return [Motion(model.motion, slip.parameters(model), model.limits, grade, slip.in_core, model.car)]
+        ahead = slip.in_core
+        mean = slip.parameters(model)
+        return [Motion(model.motion, mean, model.limits, grade, ahead, model.car, sideways)]
     drawn = np.zeros((samples, 0))  # of a model without terms
     if len(model.mean):
         spread = model.covariance_over(seconds)
         drawn = rng.multivariate_normal(model.mean, spread, size=samples, method="eigh")
     return [
-        Motion(model.motion, parameters, model.limits, grade, car=model.car)
+        Motion(model.motion, parameters, model.limits, grade, car=model.car, sideways=sideways)
         for parameters in (model.mean, *drawn)
     ]
 
@@ -106,8 +109,11 @@ class MppiOptions:
     yaw_rate: float = 1.0  # rad/s
     acceleration: float = 1.0  # m/s^2
     yaw_acceleration: float = 2.0  # rad/s^2
+    sideways_speed: float = 0.5  # m/s to both sides, of a robot that drives sideways
+    sideways_acceleration: float = 1.0  # m/s^2
     speed_std: float = 0.3  # m/s of the samples
     yaw_rate_std: float = 0.4  # rad/s of the samples
+    sideways_std: float = 0.2  # m/s of the samples
     colour: float = 0.3  # s over which the noise changes
     temperature: float = 0.3  # of the excess cost of the best quarter, where a rollout weighs e^-1
     risk: float = 0.0  # 0 counts the mean cost over the motions, 1 the worst
@@ -136,11 +142,14 @@ class MppiOptions:
         limits, costs, settings = _core.MppiLimits(), _core.MppiCosts(), _core.MppiSettings()
         for name in ("highest_speed", "lowest_speed", "yaw_rate", "acceleration", "yaw_acceleration"):
             setattr(limits, name, getattr(self, name))
+        for name in ("sideways_speed", "sideways_acceleration"):
+            setattr(limits, name, getattr(self, name))
         for name in ("across", "along", "heading", "smoothness", "obstacle"):
             setattr(costs, name, getattr(self, name))
         costs.lethal = LETHAL
         for name in ("rollouts", "periods", "period", "speed_std", "yaw_rate_std", "colour"):
             setattr(settings, name, getattr(self, name))
+        settings.sideways_std = self.sideways_std
         settings.temperature, settings.risk, settings.seed = self.temperature, self.risk, self.seed
         settings.limits, settings.costs = limits, costs
         return settings
@@ -168,14 +177,21 @@ def inflated(grid: GridMap, radius: float, *, inflation: float = 0.5) -> Costmap
 
 
 _InCore = tuple[
-    _core.MotionModel, Floats, _core.CommandLimits | None, tuple[float, float], _core.MixedAhead | None
+    _core.MotionModel, Floats, _core.CommandLimits | None, tuple[float, float], _core.MixedAhead | None, bool
 ]
 
 
 def _as_core(motions: list[Motion]) -> list[_InCore]:
     return [
-        (motion.model, motion.parameters, motion.limits, rise_of(motion.grade), motion.slip_ahead)
-        for motion in motions
+        (
+            m.model,
+            m.parameters,
+            m.limits,
+            rise_of(m.grade),
+            m.slip_ahead,
+            m.sideways or m.model.basis.sideways,
+        )
+        for m in motions
     ]
 
 
@@ -191,11 +207,24 @@ def _car_of(motions: list[Motion], options: MppiOptions) -> _core.CarCurves | No
     return car
 
 
-def _sent(command: tuple[float, float]) -> Floats:
-    values = np.asarray(command, dtype=np.float64)
-    if values.shape != (2,) or not np.isfinite(values).all():
-        raise SettingsError("the last command is not a finite (v, omega)", advice="such as last=(0.5, 0.0)")
-    return values
+def _axes_of(motions: list[Motion]) -> tuple[Axes, Axes]:
+    """Return the axes of the drive and of the commands."""
+    if motions and motions[0].car is not None:
+        return TWIST, THROTTLE
+    sideways = bool(motions) and (motions[0].sideways or motions[0].model.basis.sideways)
+    return (SIDEWAYS, SIDEWAYS) if sideways else (TWIST, TWIST)
+
+
+def _twist(what: str, given: tuple[float, ...], axes: Axes) -> Floats:
+    """Return finite numbers of these axes as the core's (v, vy, omega).
+
+    Raises:
+        SettingsError: they are not.
+    """
+    values = np.asarray(given, dtype=np.float64)
+    if values.shape != (len(axes),) or not np.isfinite(values).all():
+        raise SettingsError(f"{what} is not a finite {axes.words}", advice=f"give {len(axes)} numbers")
+    return axes.twists(values)
 
 
 class Controller:
@@ -233,7 +262,8 @@ class Controller:
             self._core = _core.Mppi(_as_core(motions), options.to_core(), _car_of(motions, options))
         except (ValueError, TypeError, OverflowError) as problem:
             raise SettingsError(str(problem).splitlines()[0], where="controller options") from problem
-        self._past = np.zeros((0, 2))
+        self._drive, self._commands = _axes_of(motions)
+        self._past = np.zeros((0, 3))
 
     def adopt(self, motions: Model | list[Motion]) -> None:
         """Drive through other motions from the next command on; the plan and the commands sent are kept.
@@ -248,13 +278,16 @@ class Controller:
             raise SettingsError(str(problem).splitlines()[0], where="controller's motions") from problem
 
     def command(
-        self, pose: Pose, drive: tuple[float, float], *, last: tuple[float, float] | None = None
-    ) -> tuple[float, float]:
-        """Return the next command (v [m/s], omega [rad/s], or throttle, steering); call it once per period.
+        self, pose: Pose, drive: tuple[float, ...], *, last: tuple[float, ...] | None = None
+    ) -> tuple[float, ...]:
+        """Return the next command; call it once per period.
+
+        It is (v [m/s], omega [rad/s]), (throttle, steering) of a car that takes these, or (v, vy, omega) of a
+        robot that drives sideways.
 
         Args:
             pose: of the robot now, in the frame of the reference.
-            drive: what the drive does now (v, omega), as wheels show it.
+            drive: what the drive does now (v, omega), or (v, vy, omega), as wheels show it.
             last: the command that was sent last, where it is not what this controller returned. At the first
                 call, without it, the drive is taken to have been commanded what it does: a robot that moves
                 goes on moving.
@@ -265,13 +298,14 @@ class Controller:
         """
         at = to_core_pose(pose, "robot's pose")
         if last is not None:
-            self._past = np.vstack((self._past[:-1], _sent(last)))
+            self._past = np.vstack((self._past[:-1], _twist("the last command", last, self._commands)))
+        moving = _twist("the drive", drive, self._drive)
         obstacles = None if self._obstacles is None else self._obstacles.in_core
         wanted = self.reference.ahead(pose, self.options.periods, self.options.period)
         try:
-            result = self._core.step(at, drive, self._past, wanted, obstacles)
+            result = self._core.step(at, moving, self._past, wanted, obstacles)
         except ValueError as problem:
             kind = PlanningError if "obstacle" in str(problem) else SettingsError
             raise kind(str(problem), where="controller") from problem
-        self._past = np.vstack((self._past, (result.v, result.omega)))[-MOST_PAST:]
-        return float(result.v), float(result.omega)
+        self._past = np.vstack((self._past, result.command))[-MOST_PAST:]
+        return self._commands.of_twist(result.command)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise.models.axes import axes_of, drive_axes
 from slipwise.models.model import Model
 from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.planning.costmap import Costmap
@@ -41,12 +42,12 @@ class Rollouts:
         return f"<Rollouts: {', '.join(shown)}>"
 
 
-def command_buffer(rollouts: int, periods: int, dtype: DTypeLike = np.float32) -> Numbers:
-    """Return zero commands [N, K, 2] that lie in memory as the kernels read them fastest.
+def command_buffer(rollouts: int, periods: int, dtype: DTypeLike = np.float32, *, axes: int = 2) -> Numbers:
+    """Return zero commands [N, K, axes] that lie in memory as the kernels read them fastest.
 
     Any array of commands is taken; in one from here, those of one period lie side by side.
     """
-    return np.zeros((2, periods, rollouts), dtype=dtype).transpose(2, 1, 0)
+    return np.zeros((axes, periods, rollouts), dtype=dtype).transpose(2, 1, 0)
 
 
 def rollout(  # noqa: PLR0913  (all but the first three have defaults)
@@ -70,7 +71,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
             those of a car with a steering angle are v and v tan(angle) / wheelbase. Those of a
             model of throttle and steering are these, in [-1, 1], as the past of the start is.
-        commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`; see `command_buffer`.
+        commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`; see `command_buffer`. Of a
+            robot that drives sideways [N, K, 3]: v, vy, omega, as `models.axes.axes_of` says.
         dt: time that a command is held [s].
         start: where the rollouts start; by default at rest in the origin.
         outputs: of "path", "end" and "costs".
@@ -86,13 +88,13 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
             results are copied; threads and level do not matter to it; a covariance is the processor's.
 
     Raises:
-        ModelError: the model does not remember a surface ahead, or its slip depends on a sideways speed.
+        ModelError: the model does not remember a surface ahead.
         SettingsError: the batch is empty, a command is not finite, something does not fit the rest, or
             there is no such device; it says why.
     """
-    numbers = checked_commands(commands, dtype)
+    numbers = checked_commands(model, commands, dtype)
     check_threads(threads)
-    warn_of_unseen_speeds(model, numbers[..., 0], numbers[..., 1], stacklevel=2)
+    warn_of_unseen_speeds(model, numbers, stacklevel=2)
     numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start)
     wanted = _wanted(outputs, costmap)
     rollouts, periods = numbers.shape[:2]
@@ -101,13 +103,16 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         "end": _buffer("end", wanted, out, (3, rollouts), numbers.dtype),
         "costs": _buffer("costs", wanted, out, (3, rollouts), numbers.dtype),
     }
-    starts = begin.in_core(rollouts)
+    axes = drive_axes(model)
+    starts = begin.in_core(rollouts, axes)
     gpu = gpu_of(device)
     slip = slip_ahead(begin.terrain_ahead, model)
     parameters, ahead = (model.mean, None) if slip is None else (slip.parameters(model), slip.in_core)
     try:
         model.refuse_heading("rollouts")
-        program = _core.RolloutProgram(model.motion, parameters, dt, begin.ground, model.limits, ahead)
+        program = _core.RolloutProgram(
+            model.motion, parameters, dt, begin.ground, model.limits, ahead, axes.sideways
+        )
         _core.rollout_batch(
             program,
             numbers,
@@ -126,8 +131,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     return Rollouts(covariance=spread, **buffers)
 
 
-def checked_commands(commands: ArrayLike, dtype: DTypeLike | None) -> Numbers:
-    """Return commands [N, K, 2] in float32 or float64, without a copy where they are.
+def checked_commands(model: Model, commands: ArrayLike, dtype: DTypeLike | None) -> Numbers:
+    """Return commands [N, K, axes] in float32 or float64, without a copy where they are.
 
     Raises:
         SettingsError: they are no such array, or the type is another one.
@@ -137,14 +142,16 @@ def checked_commands(commands: ArrayLike, dtype: DTypeLike | None) -> Numbers:
         kind = np.dtype((np.float32 if given.dtype == np.float32 else np.float64) if dtype is None else dtype)
         numbers = given.astype(kind, copy=False)
     except (TypeError, ValueError) as problem:
-        raise SettingsError("the commands are no array of numbers", advice="give [N, K, 2]") from problem
+        raise SettingsError("the commands are no array of numbers", advice="give [N, K, axes]") from problem
     if kind not in (np.float32, np.float64):
         raise SettingsError(f"rollouts do not compute in {kind}", advice="use float32 or float64")
-    if numbers.ndim != 3 or numbers.shape[2] != 2 or numbers.size == 0:
+    axes = axes_of(model)
+    if numbers.ndim != 3 or numbers.size == 0:
         raise SettingsError(
             f"the commands have shape {numbers.shape}",
-            advice="give [N, K, 2] with at least one rollout and period",
+            advice=f"give [N, K, {len(axes)}] with at least one rollout and period",
         )
+    axes.check("the commands are rows", numbers.shape[2])
     return numbers
 
 
@@ -169,7 +176,9 @@ def uncertain(model: Model, dt: float, start: Start, horizon: float) -> _core.Un
     inflation = student_at(model, horizon).inflation
     spread = (covariance, model.noise, scale, inflation, model.disturbance, model.prior_std)
     ahead = None if slip is None else slip.in_core
-    return _core.UncertainModel(model.motion, parameters, *spread, dt, start.ground, model.limits, ahead)
+    sideways = drive_axes(model).sideways
+    setting = (dt, start.ground, model.limits, ahead, sideways)
+    return _core.UncertainModel(model.motion, parameters, *spread, *setting)
 
 
 def _covariance(
@@ -178,7 +187,8 @@ def _covariance(
     rollouts, periods = commands.shape[:2]
     result = np.empty((6, periods, rollouts))
     unit = uncertain(model, dt, start, dt)
-    _core.rollout_covariance(unit, commands.astype(np.float64), start.in_core(rollouts), result, threads)
+    starts = start.in_core(rollouts, drive_axes(model))
+    _core.rollout_covariance(unit, commands.astype(np.float64), starts, result, threads)
     at_one_period = student_at(model, dt).inflation
     inflation = np.array([student_at(model, dt * (k + 1)).inflation / at_one_period for k in range(periods)])
     result *= inflation[:, None]

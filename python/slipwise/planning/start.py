@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.ground import Grade, rise_of
+from slipwise.models.axes import Axes
 from slipwise.terrain_ahead import TerrainAhead
 
 Floats = NDArray[np.float64]
@@ -23,8 +24,8 @@ class StartRows:
     """A start for each of S rollouts, or one for all."""
 
     pose: Floats  # [S, 3]
-    drive: Floats  # [S, 2]
-    past: Floats  # [S, P, 2]
+    drive: Floats  # [S, axes of the drive]
+    past: Floats  # [S, P, axes of the commands]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +33,11 @@ class Start:
     """One start for all rollouts, or one each."""
 
     pose: ArrayLike = (0.0, 0.0, 0.0)  # [3] or [N, 3]: x, y [m], yaw [rad]; results are in its frame
-    drive: ArrayLike = (0.0, 0.0)  # [2] or [N, 2]: v [m/s], omega [rad/s] now; they matter behind lag, ramps
-    past: ArrayLike | None = None  # [P, 2] or [N, P, 2]: commands sent before, one period apart, oldest first
+    # [2] or [N, 2]: v [m/s], omega [rad/s] now; they matter behind lag and ramps. At rest where it is None.
+    # Of a robot that drives sideways v, vy, omega.
+    drive: ArrayLike | None = None
+    # [P, axes] or [N, P, axes]: commands sent before, one period apart, the oldest first
+    past: ArrayLike | None = None
     gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2 along the robot's x and y axes, positive downhill
     grade: Grade | None = None  # of the ground in the frame of `pose`, in place of `gravity`
     terrain_ahead: TerrainAhead | None = None  # surfaces at distances along each rollout's path
@@ -43,24 +47,32 @@ class Start:
         """Gravity, and how much the ground rises per metre along the axes of the frame of `pose`."""
         return (*self.gravity, *rise_of(self.grade))
 
-    def in_core(self, rollouts: int) -> _core.StartList:
+    def in_core(self, rollouts: int, axes: Axes) -> _core.StartList:
         """Check the start against the number of rollouts and hand it to the core.
 
         Raises:
             SettingsError: a shape does not fit, or a number is not finite.
         """
-        rows = self.rows(rollouts)
-        return _core.StartList(np.hstack((rows.pose, rows.drive)), np.ascontiguousarray(rows.past))
+        rows = self.rows(rollouts, axes)
+        starts = np.hstack((rows.pose, axes.twists(rows.drive)))
+        return _core.StartList(starts, np.ascontiguousarray(axes.twists(rows.past)))
 
-    def rows(self, rollouts: int) -> StartRows:
+    def rows(self, rollouts: int, axes: Axes, *, sent: Axes | None = None) -> StartRows:
         """Check the start against the number of rollouts and return it as rows.
+
+        Args:
+            rollouts: how many there are.
+            axes: of the drive.
+            sent: of the commands; by default those of the drive.
 
         Raises:
             SettingsError: a shape does not fit, or a number is not finite.
         """
-        pose, drive = _rows("pose", self.pose, 3), _rows("drive", self.drive, 2)
+        pose = _rows("pose", self.pose, 3)
+        drive = _rows("drive", np.zeros(len(axes)) if self.drive is None else self.drive, len(axes))
         starts = max(len(pose), len(drive))
-        past = np.zeros((1, 0, 2)) if self.past is None else _past(self.past)
+        commands = axes if sent is None else sent
+        past = np.zeros((1, 0, len(commands))) if self.past is None else _past(self.past, commands)
         starts = max(starts, len(past))
         if starts not in (1, rollouts):
             raise SettingsError(
@@ -83,14 +95,16 @@ def _rows(name: str, values: ArrayLike, width: int) -> Floats:
     return rows
 
 
-def _past(values: ArrayLike) -> Floats:
+def _past(values: ArrayLike, axes: Axes) -> Floats:
     past = _finite("past", values)
     if past.ndim == 2:
         past = past[None]
-    if past.ndim != 3 or past.shape[2] != 2:
+    if past.ndim != 3:
         raise SettingsError(
-            f"the start's past has shape {np.shape(values)}", advice="give commands [P, 2], or [N, P, 2]"
+            f"the start's past has shape {np.shape(values)}",
+            advice=f"give commands [P, {len(axes)}], or [N, P, {len(axes)}]",
         )
+    axes.check("the start's past is rows", past.shape[2])
     return past
 
 

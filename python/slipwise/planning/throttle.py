@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import SettingsError
+from slipwise.models.axes import THROTTLE, TWIST
 from slipwise.models.model import Model
 from slipwise.planning.start import Start
 
@@ -24,20 +25,18 @@ def behind_curves(model: Model, commands: Numbers, dt: float, start: Start) -> t
 
     Args:
         model: a learned model.
-        commands: [N, K, 2] speed [m/s] and yaw rate [rad/s]; of a car, throttle and steering.
+        commands: [N, K, axes] speed [m/s] and yaw rate [rad/s]; of a car, throttle and steering.
         dt: time that a command is held [s].
         start: where the rollouts start; its drive is measured (v, omega), its past holds commands.
 
     Raises:
-        ModelError: slip depends on a sideways speed, which rollouts have not.
         SettingsError: a throttle or a steering is beyond 1, or a shape does not fit.
     """
-    model.refuse_sideways("rollouts")
     car = model.car
     if car is None:
         return commands, start
     rollouts, periods = commands.shape[:2]
-    rows = start.rows(rollouts)
+    rows = start.rows(rollouts, TWIST, sent=THROTTLE)
     for values in (commands, rows.past):
         if not np.isfinite(values).all() or np.abs(values).max(initial=0.0) > _LARGEST:
             raise SettingsError(

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.ground import ElevationMap, Ground, Pose
+from slipwise.models.axes import refuse_sideways
 from slipwise.models.model import Model
 from slipwise.number_text import number_text
 from slipwise.planning.limits import AT_REST, DriveState, Limits, limits_of
@@ -104,7 +105,7 @@ class Planner:
         ground: Ground | None = None,
     ) -> None:
         model.refuse_throttle("planned trajectories")
-        model.refuse_sideways("planned trajectories")
+        refuse_sideways(model, "planned trajectories")
         self.limits = limits_of(model) if limits is None else limits
         self.ground = ground
         settings = options.to_core(self.limits)

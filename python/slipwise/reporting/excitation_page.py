@@ -68,6 +68,9 @@ def summary(drive: Excitation, lessons: Sequence[Lesson]) -> list[str]:
         f"At most {number(fastest)} m/s and {number(quickest)} rad/s; the limits are {number(space.speed)} "
         f"m/s and {number(space.yaw_rate)} rad/s."
     )
+    if space.sideways > 0.0:
+        aside = max(abs(move.vy) for move in drive.moves)
+        limits_text += f" Sideways at most {number(aside)} m/s; the limit is {number(space.sideways)} m/s."
     gain_text = (
         f"The worst prediction of {HORIZON:g} s: yaw ± {number(before.yaw)} rad before the drive and ± "
         f"{number(after.yaw)} rad after it, position ± {number(before.position)} m and ± "
@@ -143,9 +146,10 @@ def _line(x: NDArray[np.float64], y: NDArray[np.float64], colour: str, width: fl
 
 def _commands(drive: Excitation) -> Figure:
     commands = command_inputs(drive)
-    return step_lines(
-        commands.t, {"speed [m/s]": (commands.v, POSITION), "yaw rate [rad/s]": (commands.omega, YAW)}
-    )
+    lines = {"speed [m/s]": (commands.v, POSITION), "yaw rate [rad/s]": (commands.omega, YAW)}
+    if drive.space.sideways > 0.0:
+        lines["to the left [m/s]"] = (commands.vy, MEAN)
+    return step_lines(commands.t, lines)
 
 
 def _worst(lessons: Sequence[Lesson]) -> Figure:
@@ -167,9 +171,11 @@ def _worst(lessons: Sequence[Lesson]) -> Figure:
 
 
 def _moves(lessons: Sequence[Lesson]) -> str:
+    aside = any(lesson.move is not None and lesson.move.vy for lesson in lessons)
     head = (
         "move",
         "speed [m/s]",
+        *(("to the left [m/s]",) if aside else ()),
         "yaw rate [rad/s]",
         "worst yaw [rad]",
         "after",
@@ -181,6 +187,7 @@ def _moves(lessons: Sequence[Lesson]) -> str:
         if lesson.move is not None:
             what = (
                 lesson.move.v,
+                *((lesson.move.vy,) if aside else ()),
                 lesson.move.omega,
                 before.yaw,
                 lesson.yaw,

@@ -106,7 +106,7 @@ def _record() -> _core.WheelRecord:
 def _mppi() -> _core.Mppi:
     settings = _core.MppiSettings()
     settings.rollouts, settings.periods = 16, 8
-    return _core.Mppi([(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None)], settings, None)
+    return _core.Mppi([(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None, False)], settings, None)
 
 
 def _drive_start() -> _core.ActuatorState:
@@ -122,7 +122,7 @@ def _planner() -> _core.TrajectoryPlanner:
 
 def _uncertain() -> _core.UncertainModel:
     model, spread = _model(), (0.01 * np.eye(SIZE), _noise(), np.ones(3), 1.0, _law(), np.ones(SIZE))
-    return _core.UncertainModel(model, np.full(SIZE, 0.01), *spread, 0.1, [0.0] * 4, None, None)
+    return _core.UncertainModel(model, np.full(SIZE, 0.01), *spread, 0.1, [0.0] * 4, None, None, False)
 
 
 def _following() -> _thesis.FollowingEstimator:
@@ -233,7 +233,9 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "NoiseGroup": _noise_group,
     "Recording": _recording,
     "RegressionExample": _example,
-    "RolloutProgram": lambda: _core.RolloutProgram(_model(), np.full(SIZE, 0.01), 0.1, [0.0] * 4, None, None),
+    "RolloutProgram": lambda: _core.RolloutProgram(
+        _model(), np.full(SIZE, 0.01), 0.1, [0.0] * 4, None, None, False
+    ),
     "ScatterCentre": lambda: _thesis.ScatterCentre.Mean,
     "Segment": _segment,
     "SegmentJacobian": lambda: _thesis.SegmentJacobian.Thesis,
@@ -241,7 +243,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "SegmentPath": lambda: _core.linearize_segment(_model(), np.zeros(SIZE), _inputs(), _segment()).path,
     "SlipNow": _now,
     "SlipRatioFilterSettings": _slip_ratios,
-    "StartList": lambda: _core.StartList(np.zeros((1, 5)), np.zeros((1, 1, 2))),
+    "StartList": lambda: _core.StartList(np.zeros((1, 6)), np.zeros((1, 1, 3))),
     "Status": lambda: _core.Status.Converged,
     "SteadyNoise": lambda: _thesis.SteadyNoise(np.full(3, 0.01), np.full(3, 0.01), np.full(3, 0.01)),
     "SteadySegment": _steady,
@@ -265,9 +267,9 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "MotionLearner.forget fraction": lambda: 0.5,
     "MotionLearner.load saved": lambda: _learner().save(),
     "MotionLearner.predict future": lambda: np.array([[6.0, 0.5, 0.0, 0.1]]),
-    "Mppi.__init__ models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None)],
-    "Mppi.adopt models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None)],
-    "Mppi.step past": lambda: np.zeros((2, 2)),
+    "Mppi.__init__ models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None, False)],
+    "Mppi.adopt models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None, False)],
+    "Mppi.step past": lambda: np.zeros((2, 3)),
     "Mppi.step reference": lambda: np.zeros((8, 3)),
     "NoiseGroup.__init__ residuals": lambda: list(np.ones((9, 3, 2))),
     "NoiseGroup.__init__ times": lambda: [1.0, 2.0],

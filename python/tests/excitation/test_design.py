@@ -69,7 +69,7 @@ def test_drive_without_an_area_teaches_more_than_uniform_commands() -> None:
     theirs = []
     for _ in range(20):
         chosen = commands[random.integers(len(commands), size=len(drive.moves))]
-        moves = tuple(Move(v, w, 2.0, 0.0) for v, w in chosen.tolist())
+        moves = tuple(Move(v, w, 2.0, 0.0) for v, _, w in chosen.tolist())
         theirs.append(lessons_of(replace(drive, moves=moves))[-1].yaw)
     assert ours < 0.5 * np.median(theirs)
 

@@ -40,7 +40,7 @@ def test_robot_without_slip_ends_where_it_began() -> None:
 
 def test_periods_hold_the_command_and_then_stand() -> None:
     periods = command_periods([Move(1.0, -0.5, 0.2, 0.1)], 0.1)
-    np.testing.assert_array_equal(periods, [[1.0, -0.5], [1.0, -0.5], [0.0, 0.0]])
+    np.testing.assert_array_equal(periods, [[1.0, 0.0, -0.5], [1.0, 0.0, -0.5], [0.0, 0.0, 0.0]])
 
 
 def test_moves_follow_each_other_without_a_gap() -> None:

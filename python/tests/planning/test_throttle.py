@@ -8,11 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from sample_cars import true_car, write_car_log
-from sample_models import Made, make_model
 
 import slipwise as sw
 from slipwise import _core
-from slipwise.errors import ModelError, SettingsError
+from slipwise.errors import SettingsError
 from slipwise.logs import LogOptions
 from slipwise.planning import Controller, MppiOptions, ReferencePath, learned_motions
 from slipwise.planning.futures import sample_futures
@@ -78,18 +77,6 @@ def test_speeds_in_place_of_throttle_are_refused(model: sw.Model) -> None:
     mixed = [*learned_motions(model), replace(learned_motions(model)[0], car=None)]
     with pytest.raises(SettingsError, match="do not mix"):
         Controller(mixed, circle(), options=MppiOptions().for_car())
-
-
-def test_slip_of_a_sideways_speed_is_refused_where_there_is_none() -> None:
-    sideways = make_model(Made(basis=_core.named_basis("omni-8"), values={"lat.Vy": -0.1}))
-    for use in (
-        lambda: rollout(sideways, np.zeros((1, 4, 2)), DT),
-        lambda: sample_futures(sideways, np.zeros((1, 4, 2)), DT, samples=1, seed=1),
-        lambda: learned_motions(sideways),
-        lambda: sw.planning.Planner(sideways),
-    ):
-        with pytest.raises(ModelError, match="sideways"):
-            use()
 
 
 def circle() -> ReferencePath:

@@ -65,7 +65,7 @@ struct DatedSurfaceEvent {
 struct PredictedPath {
   double start;                              ///< [s]
   std::vector<double> t;                     ///< [N] s, the last at the horizon
-  std::vector<Eigen::Vector3d> poses;        ///< [N] of the sensor in the frame of its pose at the start
+  std::vector<Eigen::Vector3d> poses;        ///< [N] of base_link in the frame of its pose at the start
   std::vector<Eigen::Matrix3d> covariances;  ///< [N] of a Student t each, its inflation included
   std::vector<StudentT> students;            ///< [N] of the nearest horizon whose errors are known
   Structure structure;                       ///< that predicts

@@ -16,11 +16,13 @@ namespace slipwise {
 
 /// Limits of the sampled commands.
 struct MppiLimits {
-  double lowest_speed = 0.0;      ///< [m/s]
-  double highest_speed = 1.0;     ///< [m/s]
-  double yaw_rate = 1.0;          ///< [rad/s], to both sides
-  double acceleration = 1.0;      ///< [m/s^2]
-  double yaw_acceleration = 2.0;  ///< [rad/s^2]
+  double lowest_speed = 0.0;           ///< [m/s]
+  double highest_speed = 1.0;          ///< [m/s]
+  double yaw_rate = 1.0;               ///< [rad/s], to both sides
+  double acceleration = 1.0;           ///< [m/s^2]
+  double yaw_acceleration = 2.0;       ///< [rad/s^2]
+  double sideways_speed = 0.5;         ///< [m/s], to both sides, of a robot that drives sideways
+  double sideways_acceleration = 1.0;  ///< [m/s^2]
 };
 
 /// What costs how much, per second where it lasts.
@@ -40,6 +42,7 @@ struct MppiSettings {
   double period = 0.05;       ///< [s], as of the models
   double speed_std = 0.3;     ///< of the sampled speeds [m/s]
   double yaw_rate_std = 0.4;  ///< of the sampled yaw rates [rad/s]
+  double sideways_std = 0.2;  ///< of the sampled sideways speeds [m/s]
   double colour = 0.3;        ///< time over which the noise changes [s]; 0 is white
   double temperature = 0.3;   ///< fraction of the best quarter's excess cost at which a rollout weighs e^-1
   double risk = 0.0;          ///< 0 counts the mean cost over the models, 1 the worst
@@ -72,12 +75,22 @@ struct MppiResult {
   bool collides = false;   ///< every sampled rollout does, through some model
 };
 
+/// One number of the commands, and how it is sampled.
+struct MppiAxis {
+  double DriveCommand::* part;
+  float spread, lowest, highest;  ///< of the samples [m/s or rad/s]
+  float change;                   ///< over a period, at most
+  ColouredNoise noise;
+  std::vector<float> values = {};  ///< [periods * rollouts], rollouts side by side
+};
+
 class Mppi {
  public:
-  /// The models differ in their parameters: the mean, and samples where risk counts.
-  /// \throws std::invalid_argument without a model, or where one has another period than the settings.
-  /// With a `car`, commands are throttle (v) and steering (omega), in [-1, 1] as limits say, and go through its curves
-  /// first.
+  /// The models differ in their parameters: the mean, and samples where risk counts. Where they drive sideways, so do
+  /// the sampled commands.
+  /// \throws std::invalid_argument without a model, or where one has another period than the settings or other axes
+  /// than the first. With a `car`, commands are throttle (v) and steering (omega), in [-1, 1] as limits say, and go
+  /// through its curves first.
   Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings, std::optional<CarCurves> car = {});
 
   /// One iteration from the last plan, moved on by a period; at first from the last command, held. `map` is null where
@@ -103,13 +116,13 @@ class Mppi {
   std::vector<RolloutProgram> models_;
   MppiSettings settings_;
   std::optional<CarCurves> car_;
-  ColouredNoise noise_v_, noise_omega_;
+  std::vector<MppiAxis> axes_;      // v, omega and, where the models have it, vy
   std::vector<DriveCommand> plan_;  // [periods]
   bool planned_ = false;
-  std::vector<float> v_, omega_, x_, y_, theta_;  // [periods * rollouts], rollouts side by side
-  std::vector<float> cost_, mean_, worst_;        // [rollouts]
-  std::vector<std::uint8_t> free_;                // [rollouts], whether no model collides
-  std::vector<float> map_sum_, map_highest_;      // [rollouts]
+  std::vector<float> x_, y_, theta_;          // [periods * rollouts], rollouts side by side
+  std::vector<float> cost_, mean_, worst_;    // [rollouts]
+  std::vector<std::uint8_t> free_;            // [rollouts], whether no model collides
+  std::vector<float> map_sum_, map_highest_;  // [rollouts]
 };
 
 }  // namespace slipwise

@@ -16,6 +16,7 @@ struct CommandColumns {
   const float* omega;  ///< [rad/s]
   std::size_t rollouts;
   std::size_t periods;
+  const float* vy = nullptr;  ///< [m/s], of a program that drives sideways
 };
 
 /// What the drive is about to do.

@@ -104,6 +104,7 @@ struct LaneJob {
   std::size_t rollouts, periods;
   const Scalar* v;
   const Scalar* omega;
+  const Scalar* vy;  ///< null where the robot does not drive sideways
   std::ptrdiff_t rollout_stride, period_stride;
 
   Scalar* path[3];  ///< x, y, theta: null or [periods * rollouts]
@@ -132,6 +133,7 @@ struct LaneBlock {
   Scalar* sine;
   LaneStart<Scalar> v;
   LaneStart<Scalar> omega;
+  LaneStart<Scalar> vy;
   Scalar* cell_x;  ///< the start in cells of the map
   Scalar* cell_y;
   const DriveCommand* past;  ///< the commands sent before the start, the oldest first
@@ -148,7 +150,7 @@ SLIPWISE_LANES std::size_t lanes_in(const LaneBlock<Scalar>& block) {
   return L::kLanes == 1 ? 1 : block.count;
 }
 
-inline constexpr std::size_t kStartRows = 13;  ///< numbers per lane that a block points to
+inline constexpr std::size_t kStartRows = 16;  ///< numbers per lane that a block points to
 
 /// Lets a block point to kStartRows rows of numbers, one after the other.
 template <typename Scalar>
@@ -160,8 +162,9 @@ SLIPWISE_LANES void point_to_rows(Scalar* rows, std::size_t length, LaneBlock<Sc
   block.sine = rows + 4 * length;
   block.v = {rows + 5 * length, rows + 6 * length, rows + 7 * length};
   block.omega = {rows + 8 * length, rows + 9 * length, rows + 10 * length};
-  block.cell_x = rows + 11 * length;
-  block.cell_y = rows + 12 * length;
+  block.vy = {rows + 11 * length, rows + 12 * length, rows + 13 * length};
+  block.cell_x = rows + 14 * length;
+  block.cell_y = rows + 15 * length;
 }
 
 /// What the ramps of a block's drives hold at the start.
@@ -178,6 +181,7 @@ template <typename Scalar>
 struct LimitedRows {
   Scalar* v;
   Scalar* omega;
+  Scalar* vy;           ///< null where the robot does not drive sideways
   std::size_t periods;  ///< from the start on, of `pieces` rows each
 };
 

@@ -17,9 +17,9 @@
 // NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
-/// How slip is found: a program of products, one of second degree in speed and curvature (thesis 5.1), or products that
-/// follow the ground along the path: gravity on a plane that is not level, and surfaces that the robot comes to.
-enum class Slip : std::uint8_t { Products, Quadratic, AlongGround };
+/// How slip is found: a program of products, one of second degree in speed and curvature (thesis 5.1), or products with
+/// all that is rarer: a sideways speed, gravity on a plane that is not level, and surfaces that the robot comes to.
+enum class Slip : std::uint8_t { Products, Quadratic, Any };
 
 /// A robot in every lane: its drive and where it is.
 template <class L, Actuator kActuator, Slip kSlip>
@@ -29,9 +29,10 @@ struct RobotLanes {
   PathLanes<L> path;
 };
 template <class L, Actuator kActuator>
-struct RobotLanes<L, kActuator, Slip::AlongGround> {
+struct RobotLanes<L, kActuator, Slip::Any> {
   ChannelLanes<L, kActuator> v;
   ChannelLanes<L, kActuator> omega;
+  ChannelLanes<L, kActuator> vy;
   PathLanes<L> path;
   L::Vector travelled;  ///< [m]
 };
@@ -61,19 +62,29 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
   if constexpr (kSlip == Slip::Quadratic) {
     quadratic_tangent<L>(job, coefficients, mean_v, mean_omega, tangent);
   } else if constexpr (kSlip == Slip::Products) {
-    slip_tangent<L>(job, {coefficients, nullptr}, mean_v, mean_omega, tangent);
+    slip_tangent<L>(job, {coefficients, nullptr, nullptr}, mean_v, mean_omega, tangent);
   } else {
+    typename L::Vector mean_vy;
+    if (job.vy != nullptr) {
+      advance<L, kActuator, true>(part.v, robot.vy, mean_vy);
+    }
     GradeLanes<L> grade;
-    find_grade<L>(job, robot.path, mean_omega * (part.duration * static_cast<Scalar>(0.5)), grade);
-    slip_tangent<L>(job, {coefficients, &grade}, mean_v, mean_omega, tangent);
+    if (job.on_grade) {
+      find_grade<L>(job, robot.path, mean_omega * (part.duration * static_cast<Scalar>(0.5)), grade);
+    }
+    PartSlip<L> slip{coefficients, job.on_grade ? &grade : nullptr, job.vy != nullptr ? &mean_vy : nullptr};
+    slip_tangent<L>(job, slip, mean_v, mean_omega, tangent);
     const typename L::Vector length = magnitude(mean_v) * part.duration;
     for (std::size_t i = 0; i < job.edge_count; ++i) {
       TangentLanes<L> change;
-      slip_tangent<L>(job, {coefficients + 3 * (i + 1) * job.product_count, &grade}, mean_v, mean_omega, change);
+      slip.coefficients = coefficients + 3 * (i + 1) * job.product_count;
+      slip_tangent<L>(job, slip, mean_v, mean_omega, change);
       add_beyond<L>(job.edges[i], robot.travelled, length, change, tangent);
     }
     robot.travelled = robot.travelled + magnitude(tangent.forward);
-    see_from_above<L>(grade, tangent);
+    if (job.on_grade) {
+      see_from_above<L>(grade, tangent);
+    }
   }
 }
 
@@ -89,7 +100,11 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
   start_channel(job, block, source_v, job.shift_v, robot.v);
   start_channel(job, block, source_omega, job.shift_omega, robot.omega);
   start_path<L>(block, robot.path);
-  if constexpr (kSlip == Slip::AlongGround) {
+  const CommandSource<Scalar> source_vy{job.vy + (job.vy != nullptr ? first : 0), &block.vy, &DriveCommand::vy};
+  if constexpr (kSlip == Slip::Any) {
+    if (job.vy != nullptr) {
+      start_channel(job, block, source_vy, job.shift_v, robot.vy);
+    }
     fill(static_cast<Scalar>(0), robot.travelled);
   }
   OutputLanes<L> output(job, block);
@@ -100,6 +115,11 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
     const LanePart<Scalar>& part = job.parts[i];
     if (kActuator == Actuator::None || part.next_v) {
       tell(job, block, source_v, robot.v);
+      if constexpr (kSlip == Slip::Any) {
+        if (job.vy != nullptr) {
+          tell(job, block, source_vy, robot.vy);
+        }
+      }
     }
     if (kActuator == Actuator::None || part.next_omega) {
       tell(job, block, source_omega, robot.omega);
@@ -140,7 +160,7 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
 
 template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>
 unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  if constexpr (kSlip == Slip::AlongGround) {  // rarer, and not worth kernels for both kinds of turns
+  if constexpr (kSlip == Slip::Any) {  // rarer, and not worth kernels for both kinds of turns
     return roll_block_as<L, kActuator, kSlip, true>(job, block);
   }
   const unsigned fault = roll_block_as<L, kActuator, kSlip, false>(job, block);
@@ -157,6 +177,12 @@ SLIPWISE_LANES Actuator actuator_of(const LaneJob<Scalar>& job) {
     return Actuator::Lags;
   }
   return job.part_end == 1 && job.pieces == 1 ? Actuator::None : Actuator::Delays;
+}
+
+/// Whether it is one of the rarer jobs.
+template <typename Scalar>
+SLIPWISE_LANES bool needs_any(const LaneJob<Scalar>& job) {
+  return job.on_grade || job.edge_count > 0 || job.vy != nullptr;
 }
 
 template <class Level, Slip kSlip, typename Scalar>
@@ -180,8 +206,8 @@ unsigned roll_block_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& bloc
 
 template <class Level, typename Scalar>
 unsigned roll_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  if (job.on_grade || job.edge_count > 0) {
-    return roll_block_of<Level, Slip::AlongGround>(job, block);
+  if (needs_any(job)) {
+    return roll_block_of<Level, Slip::Any>(job, block);
   }
   return job.is_quadratic ? roll_block_of<Level, Slip::Quadratic>(job, block)
                           : roll_block_of<Level, Slip::Products>(job, block);

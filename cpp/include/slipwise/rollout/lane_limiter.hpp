@@ -90,12 +90,18 @@ void limit_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block, con
   load(start.yaw_rate, ramps.yaw_rate);
   load(start.left, ramps.left);
   load(start.right, ramps.right);
+  const CommandSource<Scalar> source_vy{job.vy + (job.vy != nullptr ? first : 0), &block.vy, &DriveCommand::vy};
   std::size_t row = 0;
   for (std::size_t period = 0; period < rows.periods; ++period) {
     typename L::Vector commanded_v;
     typename L::Vector commanded_omega;
     read_commands<L>(job, block, source_v, static_cast<std::ptrdiff_t>(period), commanded_v);
     read_commands<L>(job, block, source_omega, static_cast<std::ptrdiff_t>(period), commanded_omega);
+    typename L::Vector vy;  // passes as it is
+    fill(static_cast<Scalar>(0), vy);
+    if (job.vy != nullptr) {
+      read_commands<L>(job, block, source_vy, static_cast<std::ptrdiff_t>(period), vy);
+    }
     const typename L::Vector aimed_v = aim(limits.speed, commanded_v);
     const typename L::Vector aimed_omega = aim(limits.yaw_rate, commanded_omega);
     const typename L::Vector nothing = (commanded_v - commanded_v) + (commanded_omega - commanded_omega);
@@ -105,6 +111,9 @@ void limit_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block, con
       limit_piece<L>(limits, ramps, v, omega);
       store(v + nothing, rows.v + row);
       store(omega + nothing, rows.omega + row);
+      if (job.vy != nullptr) {
+        store(vy, rows.vy + row);
+      }
     }
   }
 }

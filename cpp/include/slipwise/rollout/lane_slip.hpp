@@ -30,9 +30,35 @@ struct GradeLanes {
   L::Vector cos_pitch, across, cos_roll, upward;  ///< of the rows of A: (cos p, sin p sin r), cos r, cos r / cos p
 };
 
-/// Without a `grade` no product has gravity for a factor.
+/// What a part is driven and slips on, beside speed and yaw rate.
+template <class L>
+struct PartSlip {
+  const L::Scalar* coefficients;
+  const GradeLanes<L>* grade;    ///< null on level ground
+  const typename L::Vector* vy;  ///< the mean speed to the left; null where the robot does not drive sideways
+};
+
+/// Those of the sideways speed, as Term has them.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const GradeLanes<L>* grade, const typename L::Vector& v,
+SLIPWISE_LANES void find_sideways_factors(const LaneJob<Scalar>& job, const typename L::Vector& v,
+                                          const typename L::Vector& vy, FactorLanes<L>& factors) {
+  using Vector = L::Vector;
+  const auto at = [&factors](SlipFactor factor) -> Vector& { return factors.value[static_cast<std::size_t>(factor)]; };
+  copy(vy, at(SlipFactor::SideV));
+  if ((job.factors & bit(SlipFactor::AbsSideV)) != 0) {
+    copy(magnitude(vy), at(SlipFactor::AbsSideV));
+  }
+  if ((job.factors & bit(SlipFactor::ThirdHarmonic)) != 0) {
+    const Vector ahead = v * v;
+    const Vector aside = vy * vy;
+    copy(vy * (ahead * static_cast<Scalar>(3) - aside) / (ahead + aside + job.squared_curvature_speed),
+         at(SlipFactor::ThirdHarmonic));
+  }
+}
+
+/// Without a grade no product has gravity for a factor.
+template <class L, typename Scalar = L::Scalar>
+SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const PartSlip<L>& slip, const typename L::Vector& v,
                                  const typename L::Vector& omega, FactorLanes<L>& factors) {
   using Vector = L::Vector;
   const unsigned used = job.factors;
@@ -53,13 +79,20 @@ SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const GradeLanes<L>
   if ((used & bit(SlipFactor::Curvature)) != 0) {
     copy((omega * v) / (v * v + job.squared_curvature_speed), at(SlipFactor::Curvature));
   }
-  if ((used & bit(SlipFactor::Moving)) != 0) {
-    copy(any_nonzero(v, omega, one), at(SlipFactor::Moving));
+  if ((used & bit(SlipFactor::Moving)) != 0 || slip.grade != nullptr) {
+    Vector along = magnitude(v);
+    if (slip.vy != nullptr) {
+      along = along + magnitude(*slip.vy);
+    }
+    const Vector moving = any_nonzero(along, omega, one);
+    copy(moving, at(SlipFactor::Moving));
+    if (slip.grade != nullptr) {
+      copy(moving * slip.grade->gx, at(SlipFactor::GravityX));
+      copy(moving * slip.grade->gy, at(SlipFactor::GravityY));
+    }
   }
-  if (grade != nullptr) {
-    const Vector moving = any_nonzero(v, omega, one);
-    copy(moving * grade->gx, at(SlipFactor::GravityX));
-    copy(moving * grade->gy, at(SlipFactor::GravityY));
+  if (slip.vy != nullptr) {
+    find_sideways_factors<L>(job, v, *slip.vy, factors);
   }
 }
 
@@ -118,19 +151,12 @@ SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* 
                  (v * (v * d[2] + e[2]) + omega * coefficients[3 * kProductOmega + 2]);
 }
 
-/// What slip over a part follows from beside the drive.
-template <class L>
-struct PartSlip {
-  const L::Scalar* coefficients;
-  const GradeLanes<L>* grade;  ///< null on level ground
-};
-
 /// Runs the program: each product is an earlier one times a factor, and has its coefficients in the tangent.
 template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const PartSlip<L>& slip, const typename L::Vector& v,
                                  const typename L::Vector& omega, TangentLanes<L>& tangent) {
   FactorLanes<L> factors;
-  find_factors<L>(job, slip.grade, v, omega, factors);
+  find_factors<L>(job, slip, v, omega, factors);
   const Scalar* coefficients = slip.coefficients;
   typename L::Vector products[kMostProducts];
   copy(v, products[kProductV]);

@@ -48,6 +48,10 @@ class LimitedCommands {
     const std::size_t rows = before_ + periods_ * job.pieces;
     v_.resize(rows * kernel.lanes);
     omega_.resize(rows * kernel.lanes);
+    if (job.vy != nullptr) {
+      vy_.resize(rows * kernel.lanes);
+      driven_.vy = vy_.data();
+    }
     driven_.v = v_.data();
     driven_.omega = omega_.data();
     driven_.rollout_stride = 0;
@@ -68,6 +72,9 @@ class LimitedCommands {
       const DriveCommand& given = start.at(static_cast<std::ptrdiff_t>(row) - static_cast<std::ptrdiff_t>(before_));
       v_[row * kernel_.lanes + lane] = static_cast<Scalar>(given.v);
       omega_[row * kernel_.lanes + lane] = static_cast<Scalar>(given.omega);
+      if (!vy_.empty()) {
+        vy_[row * kernel_.lanes + lane] = static_cast<Scalar>(given.vy);
+      }
     }
   }
 
@@ -75,7 +82,8 @@ class LimitedCommands {
   unsigned roll(LaneBlock<Scalar>& block) {
     if (given_.limits != nullptr) {
       const std::size_t first = before_ * kernel_.lanes;
-      kernel_.limit(given_, block, start_, {v_.data() + first, omega_.data() + first, periods_});
+      kernel_.limit(given_, block, start_,
+                    {v_.data() + first, omega_.data() + first, vy_.empty() ? nullptr : vy_.data() + first, periods_});
       block.side_by_side = true;
     }
     return kernel_.roll(driven_, block);
@@ -85,9 +93,9 @@ class LimitedCommands {
   LaneKernelOfLevel<Scalar> kernel_;
   const LaneJob<Scalar>& given_;
   LaneJob<Scalar> driven_;
-  std::size_t before_ = 0;         ///< rows before the start
-  std::size_t periods_ = 0;        ///< from the start on
-  std::vector<Scalar> v_, omega_;  ///< [rows, lanes]
+  std::size_t before_ = 0;              ///< rows before the start
+  std::size_t periods_ = 0;             ///< from the start on
+  std::vector<Scalar> v_, omega_, vy_;  ///< [rows, lanes]
   RampStart<Scalar> start_{};
 };
 

@@ -21,6 +21,7 @@ struct CommandView {
   const Scalar* omega;            ///< [rad/s]
   std::ptrdiff_t rollout_stride;  ///< in numbers, not bytes
   std::ptrdiff_t period_stride;
+  const Scalar* vy = nullptr;  ///< [m/s]; of programs that drive sideways, and of no others
 };
 
 /// What the robot does where a rollout starts.

@@ -24,6 +24,7 @@ struct RolloutSetting {
   double rise_x = 0.0;        ///< of a plane per metre along the axes of the starts' frame; excludes gx and gy
   double rise_y = 0.0;        ///< [m/m]
   SlipAhead ahead = {};       ///< where slip becomes another along the path
+  bool sideways = false;      ///< the robot is commanded sideways too, as (v, vy, omega)
 
   bool on_grade() const { return rise_x != 0.0 || rise_y != 0.0; }
 };
@@ -50,6 +51,8 @@ class RolloutProgram {
   /// Its period is one piece of a control period.
   const ActuatorSchedule& actuator() const { return actuator_; }
   bool limited() const { return !unlimited(setting_.limits); }
+  /// Whether commands have a sideways speed: the setting says so, or slip depends on it.
+  bool sideways() const { return setting_.sideways; }
   /// Into how many pieces a command is cut, since the drive ramps; 1 where it does not.
   std::size_t pieces() const { return pieces_; }
 

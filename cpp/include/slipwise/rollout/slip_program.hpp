@@ -32,11 +32,12 @@ struct SlipProgram {
 /// Where the program's products stand if it is of second degree in speed and curvature (thesis 5.1), beside the drive.
 std::optional<LaneQuadratic> find_quadratic(const SlipProgram& program);
 
-/// Products that several terms fraction are computed once.
+/// Products that several terms share are computed once.
 /// \param alpha the slip parameters in basis order. \param gravity along the body's x and y axes [m/s^2]; without one
 /// it turns with the heading and is a factor.
 /// \throws std::invalid_argument when the basis needs more products than a kernel has room for.
+/// \param sideways whether the robot drives sideways too; otherwise no term has a sideways speed.
 SlipProgram compile_slip(const Basis& basis, std::span<const double> alpha,
-                         const std::optional<std::array<double, 2>>& gravity);
+                         const std::optional<std::array<double, 2>>& gravity, bool sideways);
 
 }  // namespace slipwise

@@ -118,10 +118,11 @@ const Scalar* Gpu::bring_rows(const Scalar* commands, const LaneJob<Scalar>& job
 template <typename Scalar>
 void Gpu::bring_commands(LaneJob<Scalar>& job) {
   const bool there = lies_on_gpu(job.v);
-  if (there != lies_on_gpu(job.omega)) {
-    throw std::invalid_argument("speeds and yaw rates must both lie in the processor's memory, or both in the GPU's");
+  if (there != lies_on_gpu(job.omega) || (job.vy != nullptr && there != lies_on_gpu(job.vy))) {
+    throw std::invalid_argument("speeds and yaw rates must all lie in the processor's memory, or all in the GPU's");
   }
   if (!there) {
+    job.vy = job.vy != nullptr ? bring_rows(job.vy, job, vy_) : nullptr;
     job.v = bring_rows(job.v, job, v_);
     job.omega = bring_rows(job.omega, job, omega_);
     job.rollout_stride = 1;

@@ -69,7 +69,7 @@ class Gpu {
   const Number* bring(const Number* numbers, std::size_t count, GpuMemory& memory);
 
   std::mutex one_at_a_time_;
-  GpuMemory v_, omega_, starts_, past_, cells_, faults_;
+  GpuMemory v_, omega_, vy_, starts_, past_, cells_, faults_;
   std::array<GpuMemory, 9> outputs_;
   std::vector<std::byte> side_by_side_;  ///< commands that do not lie so
 };

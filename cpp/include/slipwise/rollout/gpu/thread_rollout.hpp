@@ -46,6 +46,7 @@ SLIPWISE_LANES unsigned find_unused_faults(const ThreadJob<Scalar>& given, std::
     const std::ptrdiff_t at =
         static_cast<std::ptrdiff_t>(rollout) * job.rollout_stride + static_cast<std::ptrdiff_t>(k) * job.period_stride;
     finite &= (job.v[at] - job.v[at]) + (job.omega[at] - job.omega[at]) == 0;
+    finite &= job.vy == nullptr || job.vy[at] - job.vy[at] == 0;
   }
   return finite ? kNoFault : kNotFinite;
 }
@@ -88,8 +89,8 @@ void with_thread_actuator(const LaneJob<Scalar>& job, const Work& work) {
 }
 template <typename Scalar, class Work>
 void with_thread_kernel(const LaneJob<Scalar>& job, bool wide, const Work& work) {
-  if (job.on_grade || job.edge_count > 0) {
-    with_thread_actuator<Slip::AlongGround, true>(job, work);
+  if (needs_any(job)) {
+    with_thread_actuator<Slip::Any, true>(job, work);
   } else if (job.is_quadratic) {
     wide ? with_thread_actuator<Slip::Quadratic, true>(job, work)
          : with_thread_actuator<Slip::Quadratic, false>(job, work);
