@@ -55,9 +55,8 @@ std::vector<MppiAxis> axes_of(const MppiSettings& settings, bool sideways) {
 }
 
 /// Adds noise to the planned value, within its range and within its change from the value before.
-void sample_period(const MppiAxis& axis, float planned, const float* noise, const float* before, float* out,
-                   std::size_t count) {
-  for (std::size_t i = 0; i < count; ++i) {
+void sample_period(const MppiAxis& axis, float planned, std::span<const float> noise, const float* before, float* out) {
+  for (std::size_t i = 0; i < noise.size(); ++i) {
     const float low = std::max(axis.lowest, before[i] - axis.change);
     const float high = std::min(axis.highest, before[i] + axis.change);
     out[i] = std::min(std::max(planned + axis.spread * noise[i], low), high);
@@ -140,7 +139,7 @@ void Mppi::sample(const DriveCommand& last) {
       noise = axis.noise.next();
       noise[0] = 0.0F;  // the plan itself is one of the rollouts
       float* const out = axis.values.data() + k * count;
-      sample_period(axis, static_cast<float>(plan_[k].*axis.part), noise.data(), before, out, count);
+      sample_period(axis, static_cast<float>(plan_[k].*axis.part), noise, before, out);
       before = out;
     }
   }
