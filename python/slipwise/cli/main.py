@@ -96,9 +96,7 @@ def _slipwise(
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and leave the process with its exit code."""
     given = list(sys.argv[1:] if arguments is None else arguments)
-    gc.set_threshold(
-        50_000, 20, 20
-    )  # looking for garbage took a twelfth of a short run
+    gc.set_threshold(50_000, 20, 20)  # looking for garbage took a twelfth of a short run
     sys.exit(run(given))
 
 

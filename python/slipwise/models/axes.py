@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from slipwise.errors import ModelError, SettingsError
 from slipwise.models.model import Model
@@ -55,6 +55,11 @@ class Axes:
         if rows.shape[-1] == 3:
             return rows
         return np.stack((rows[..., 0], np.zeros(rows.shape[:-1]), rows[..., 1]), axis=-1)
+
+    def ahead(self, rows: ArrayLike) -> Floats:
+        """Commands (v, omega) [..., 2] in these axes: without a sideways speed where there is one."""
+        given = np.asarray(rows, dtype=np.float64)
+        return np.insert(given, 1, 0.0, axis=-1) if self.sideways else given
 
     def of_twist(self, twist: Iterable[float]) -> tuple[float, ...]:
         """Return the command of the core's (v, vy, omega)."""

@@ -221,12 +221,12 @@ class RoutePlanner:
     def _joined(self, node: _Node, start: Pose) -> Route:
         """Put the legs together and predict them as one drive, with its covariance."""
         begins = np.cumsum([0.0, *(leg.duration for leg in node.legs)])
-        shift = [np.array([begin, 0.0, 0.0]) for begin in begins]
-        commands = np.concatenate([leg.commands + at for leg, at in zip(node.legs, shift, strict=False)])
+        commands = np.concatenate([leg.commands for leg in node.legs])
+        commands[:, 0] += np.repeat(begins[:-1], [len(leg.commands) for leg in node.legs])
         keep = np.append(np.diff(commands[:, 0]) > 1e-9, True)
         whole = Trajectory(
             commands=commands[keep],
-            t=np.concatenate([leg.t + at[0] for leg, at in zip(node.legs, shift, strict=False)]),
+            t=np.concatenate([leg.t + begin for leg, begin in zip(node.legs, begins, strict=False)]),
             poses=np.concatenate([leg.poses for leg in node.legs]),
             at_end=node.state,
         )

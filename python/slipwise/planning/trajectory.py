@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.ground import ElevationMap, Ground, Pose
-from slipwise.models.axes import refuse_sideways
+from slipwise.models.axes import Axes, axes_of
 from slipwise.models.model import Model
 from slipwise.number_text import number_text
 from slipwise.planning.limits import AT_REST, DriveState, Limits, limits_of
@@ -60,7 +60,7 @@ NOMINAL = TrajectoryOptions()
 class Trajectory:
     """Commands, each held until the next and the last one on, and the path that they cause."""
 
-    commands: Floats  # [N, 3] t [s] from 0 on, v [m/s], omega [rad/s]
+    commands: Floats  # [N, 1 + axes] t [s] from 0 on, v [m/s], omega [rad/s]; none goes sideways
     t: Floats  # [M] s, of the poses
     poses: Floats  # [M, 3] x, y [m], yaw [rad] in the frame of the goal, the yaw not wrapped
     at_end: DriveState  # when the goal is reached
@@ -91,7 +91,7 @@ class Planner:
             above.
 
     Raises:
-        ModelError: the model takes throttle and steering, or its slip depends on a sideways speed.
+        ModelError: the model takes throttle and steering.
         SettingsError: limits, options or state contradict each other.
     """
 
@@ -105,7 +105,7 @@ class Planner:
         ground: Ground | None = None,
     ) -> None:
         model.refuse_throttle("planned trajectories")
-        refuse_sideways(model, "planned trajectories")
+        self._axes = axes_of(model)
         self.limits = limits_of(model) if limits is None else limits
         self.ground = ground
         settings = options.to_core(self.limits)
@@ -124,7 +124,7 @@ class Planner:
         plan = self._plan(goal, start, state)
         if plan.status != _core.TrajectoryStatus.Reached:
             return None
-        found = _trajectory(plan, start)
+        found = _trajectory(plan, start, self._axes)
         return found if self._holds(found.poses) else None
 
     def to(self, goal: Pose, *, start: Pose = (0.0, 0.0, 0.0), state: DriveState = AT_REST) -> Trajectory:
@@ -140,7 +140,7 @@ class Planner:
             what, _, advice = _core.trajectory_advice(plan.status).partition(": ")
             nearest = f"the nearest attempt ends {plan.gap_xy:.2g} m and {plan.gap_yaw:.2g} rad beside it"
             raise PlanningError(f"{what}; {nearest}", where=f"goal {pose_text(goal)}", advice=advice)
-        found = _trajectory(plan, start)
+        found = _trajectory(plan, start, self._axes)
         if isinstance(self.ground, ElevationMap):
             self.ground.check(found.poses)
         return found
@@ -182,10 +182,12 @@ def uncertain_path(
     at: Pose = (0.0, 0.0, 0.0),
 ) -> Path:
     """Return the path of a trajectory with its covariance, from the origin; see `predict`, also for `at`."""
-    before = np.array([[-LONG_AGO, *state.commanded]])
+    axes = axes_of(model)
+    before = np.array([[-LONG_AGO, *axes.ahead(state.commanded)]])
     commands = np.vstack((before, trajectory.commands))
+    drive = tuple(axes.ahead(state.drive).tolist())
     return predict(
-        model, commands, horizon=trajectory.duration, start=0.0, initial=state.drive, ground=ground, at=at
+        model, commands, horizon=trajectory.duration, start=0.0, initial=drive, ground=ground, at=at
     )
 
 
@@ -216,10 +218,10 @@ def placed(poses: Floats, start: Pose) -> Floats:
     return np.column_stack((x, y, start[2] + poses[:, 2]))
 
 
-def _trajectory(plan: _core.Trajectory, start: Pose) -> Trajectory:
+def _trajectory(plan: _core.Trajectory, start: Pose, axes: Axes) -> Trajectory:
     drive = plan.drive
     return Trajectory(
-        commands=np.column_stack((plan.t, plan.v, plan.omega)),
+        commands=np.column_stack((plan.t, axes.ahead(np.column_stack((plan.v, plan.omega))))),
         t=np.asarray(plan.path_t),
         poses=placed(np.asarray(plan.path), start),
         at_end=DriveState(

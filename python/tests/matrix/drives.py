@@ -77,7 +77,8 @@ def mppi(learned: Learned) -> None:
     controller = planning.Controller(motions, planning.ReferencePath(points, speed=0.6), options=options)
     pose, wheels, sent = np.zeros(3), np.zeros(3), []
     for k in range(round(1.5 * SECONDS / PERIOD)):
-        command = controller.command(tuple(pose), (wheels[0], wheels[2]))
+        drive = tuple(wheels) if situation.axes == 3 else (wheels[0], wheels[2])
+        command = controller.command(tuple(pose), drive)
         sent.append((k * PERIOD, *command))
         driven = situation.driven(situation.given(np.array(sent)), (k + 1) * PERIOD)
         pose, wheels = in_space(situation.robot, driven.pose[-1:])[0, [0, 1, 5]], driven.wheels[-1]

@@ -10,11 +10,7 @@ from matrix.situation import Situation
 #: Which situations are refused in which uses, and what the refusal says.
 REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
     (lambda s: s.robot.kind == "throttle", "trajectory c-header to-", "throttle and steering"),
-    (
-        lambda s: s.name in ("sideways-vehicle", "swerve"),
-        "mppi trajectory c-header to-",
-        "know no sideways speed",
-    ),
+    (lambda s: s.name in ("sideways-vehicle", "swerve"), "to-", "have no sideways speed"),
     (lambda s: s.learns == "wheel", "to-mppi", "was not learned from commands"),
     (lambda s: s.learns == "command", "to-diff-drive to-amcl to-autoware", "calibrate with `--input wheel`"),
     (lambda s: "positions" in s.name, "mcap", "positions without headings are not written as a bag"),
@@ -27,10 +23,6 @@ REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
 
 #: Cells that are wrong, by why they are; a test turns up when its cell is mended.
 WRONG: dict[str, str] = {
-    "rows of commands have no sideways speed": """
-        sideways:predict sideways:rollout sideways:mppi sideways:trajectory sideways:c-header sideways:ahead
-        sideways-vehicle:predict sideways-vehicle:rollout sideways-vehicle:ahead
-        swerve:predict swerve:rollout swerve:ahead""",
     "`live --vehicle` takes the vehicle's file for a name": """
         sideways-vehicle:replay swerve:replay throttle:replay throttle-positions:replay tracks:replay""",
     "lines know seven columns": """

@@ -127,12 +127,23 @@ def test_rows_of_other_axes_are_refused_and_the_axes_are_said(commands: Floats) 
 def test_uses_without_a_sideways_speed_are_refused_with_those_that_have_it() -> None:
     model = MODELS["commands"]
     for use in (
-        lambda: sw.planning.Planner(model),
         lambda: sw.planning.curvature_map(model),
         lambda: export_model(model, "diff-drive", name="model.yaml"),
     ):
         with pytest.raises(ModelError, match=r"sideways.*rollout"):
             use()
+
+
+def test_a_trajectory_of_a_sideways_robot_goes_none_sideways_and_reaches_its_goal() -> None:
+    model = MODELS["commands"]
+    plan = sw.planning.trajectory_to(model, (2.0, 0.6, 0.5))
+    assert plan.commands.shape[1] == 4
+    assert not plan.commands[:, 2].any()
+    before = np.vstack(([-10.0, 0.0, 0.0, 0.0], plan.commands))
+    end = predict(model, before, horizon=plan.duration, start=0.0).end
+    assert end == pytest.approx([2.0, 0.6, 0.5], abs=2e-3)
+    sure = sw.planning.uncertain_path(model, plan)
+    assert sure.end == pytest.approx(end, abs=2e-3)
 
 
 def test_the_controller_drives_sideways_where_that_is_the_way() -> None:
