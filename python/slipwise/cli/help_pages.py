@@ -46,6 +46,7 @@ def show_options(ctx: typer.Context, names: Collection[str], heading: str) -> No
         if option.name in names:
             option.hidden = False  # type: ignore[attr-defined]
             records.append(option.get_help_record(ctx))
+            option.hidden = True  # type: ignore[attr-defined]
     with formatter.section(heading):
         formatter.write_dl([record for record in records if record is not None])
     print(formatter.getvalue().rstrip("\n"))

@@ -6,7 +6,8 @@ from __future__ import annotations
 import gc
 import sys
 from collections.abc import Sequence
-from typing import Annotated
+from functools import cache
+from typing import Annotated, Any
 
 import typer
 
@@ -108,9 +109,15 @@ def run(arguments: Sequence[str]) -> int:
 
 def _invoke(arguments: list[str]) -> int:
     refuse_missing(COMMANDS, arguments[0])
-    command = typer.main.get_command(app)
+    command = _command_line()
     with notes_of_older_names(), command.make_context("slipwise", arguments) as context:
         return int(command.invoke(context) or 0)
+
+
+@cache
+def _command_line() -> Any:
+    """Make the whole command line, once a process: it takes longer than a command that is refused."""
+    return typer.main.get_command(app)
 
 
 if __name__ == "__main__":

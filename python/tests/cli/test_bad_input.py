@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from cli.conftest import EDD_2, Columns, Result, left_in, make_columns, write_csv
-from sample_logs import Drive
+from cli.conftest import Columns, Result, left_in, write_csv
 
 Slipwise = Callable[..., Result]
 BASIS = ("--basis", "edd-2")  # what is left out does not depend on it
@@ -95,11 +94,6 @@ def test_stamps_that_go_backward_are_counted(slipwise: Slipwise, columns: Column
     assert counts(slipwise, write_csv(folder / "back.csv", columns))["backward-stamp"] == 3 * 3
 
 
-def test_duplicate_stamps_are_counted(slipwise: Slipwise, columns: Columns, folder: Path) -> None:
-    columns["t"][500] = columns["t"][499]
-    assert counts(slipwise, write_csv(folder / "twice.csv", columns))["duplicate-stamp"] == 3
-
-
 def test_zero_stamps_are_counted(slipwise: Slipwise, columns: Columns, folder: Path) -> None:
     columns["t"] += 100.0
     columns["t"][300:320] = 0.0
@@ -114,63 +108,13 @@ def test_nothing_is_learned_across_a_gap_of_a_minute(
     assert counts(slipwise, write_csv(folder / "gap.csv", columns)) == {"late-pose": 1}
 
 
-def test_pose_jumps_of_a_metre_are_counted(slipwise: Slipwise, folder: Path) -> None:
-    slow = make_columns(Drive(seconds=90.0, speeds=(-0.1, 0.3), basis=EDD_2, alpha=(-0.1, -0.3)))
-    slow["x"][900:] += 1.0
-    slow["y"][400] -= 1.5
-    found = counts(slipwise, write_csv(folder / "jumps.csv", slow))
-    assert found["pose-jump"] == 1
-    assert found["pose-outlier"] == 1
-
-
-def test_the_real_pose_jumps_are_counted(slipwise: Slipwise, real_log_dir: Path) -> None:
-    log = real_log_dir / "husky" / "wetgrass_bad_poses.csv.gz"
-    result = slipwise("calibrate", log, "--input", "wheel", *BASIS, "--no-report", "--json", "-")
-    found = {entry["kind"]: entry["count"] for entry in result.json["left_out"]}
-    assert found["pose-jump"] > 10
-    assert result.err == ""
-
-
-def _degrees(columns: Columns) -> None:
+def test_a_contradiction_is_refused_with_advice(slipwise: Slipwise, columns: Columns, folder: Path) -> None:
+    """One of those in logs/test_quality.py."""
     columns["yaw"] = np.degrees(columns["yaw"])
-
-
-def _swapped(columns: Columns) -> None:
-    for a, b in (("cmd_v", "cmd_omega"), ("odo_v", "odo_omega")):
-        columns[a], columns[b] = columns[b], columns[a]
-
-
-def _swapped_axes(columns: Columns) -> None:
-    columns["x"], columns["y"] = columns["y"], columns["x"]
-
-
-def _z_down(columns: Columns) -> None:
-    columns["y"] *= -1.0
-    columns["yaw"] *= -1.0
-
-
-@pytest.mark.parametrize(
-    ("damage", "what", "advice"),
-    [
-        (_degrees, "yaw looks like degrees", "convert the poses' angles to radians"),
-        (_swapped, "columns look swapped: v and omega", "exchange the two columns"),
-        (_swapped_axes, "columns look swapped: x and y", "exchange them"),
-        (_z_down, "poses turn against the inputs", "a frame with z down: change the signs of y and yaw"),
-    ],
-)
-def test_contradictions_are_refused_with_advice(
-    slipwise: Slipwise,
-    columns: Columns,
-    folder: Path,
-    damage: Callable[[Columns], None],
-    what: str,
-    advice: str,
-) -> None:
-    damage(columns)
     line = refusal(slipwise, folder, "calibrate", write_csv(folder / "wrong.csv", columns))
-    assert line.startswith(what)
+    assert line.startswith("yaw looks like degrees")
     assert "wrong.csv" in line
-    assert advice in line
+    assert "convert the poses' angles to radians" in line
 
 
 @pytest.mark.parametrize("command", ["calibrate", "evaluate"])
@@ -193,34 +137,22 @@ def test_a_robot_that_never_moves_teaches_nothing(
     assert line.startswith("the robot never moves in this log (still.csv)")
 
 
-HOSTILE_YAML = {
-    "aliases": ("a: &a [x, x]\nb: [*a, *a]\n", "aliases are not allowed"),
-    "tags": ("a: !!python/object/apply:os.system ['true']\n", "not allowed"),
-    "gigabyte number": (f"slipwise_model: {'9' * 100_000}\n", "a number is too long"),
-    "gigabyte file": ("a: " + "x" * (5 * 1024 * 1024), "the file is too large"),
-    "deep nesting": ("[" * 100_000, "not a plain YAML file"),
-    "not a model": ("colour: blue\n", "is it a slipwise model?"),
-    "binary": ("\x00\x01\x02", "not a plain YAML file"),
-}
-
-
-def test_a_hostile_model_file_is_refused(
-    slipwise: Slipwise, drive_csv: Path, subtests: pytest.Subtests
-) -> None:
-    for kind, (content, expected) in HOSTILE_YAML.items():
-        with subtests.test(kind=kind):
-            Path("model.yaml").write_text(content)
-            line = refusal(slipwise, drive_csv.parent, "evaluate", drive_csv, "--model", "model.yaml")
-            assert "model.yaml" in line
-            assert expected in line
+def test_a_file_that_is_no_model_is_refused(slipwise: Slipwise, drive_csv: Path) -> None:
+    """Others stand in models/test_yaml_file.py and models/test_model.py."""
+    for content, expected in [
+        ("a: &a [x, x]\nb: [*a, *a]\n", "aliases are not allowed"),
+        ("colour: blue\n", "is it a slipwise model?"),
+    ]:
+        Path("model.yaml").write_text(content)
+        line = refusal(slipwise, drive_csv.parent, "evaluate", drive_csv, "--model", "model.yaml")
+        assert "model.yaml" in line
+        assert expected in line
 
 
 @pytest.mark.parametrize(
     ("content", "expected"),
     [
         ("basis = ", "not a TOML file"),
-        ("colour = 'blue'", "colour: there is no such key"),
-        ("[filter]\nhuber = nan", "filter.huber: "),
         ("basis = 'edd-3'", "unknown slip basis 'edd-3'; known are edd-2"),
     ],
 )

@@ -137,7 +137,6 @@ DESTROYING = (
     "surfaces merge m.yaml other.yaml -o other.yaml",
     "plan --model m.yaml --map map.yaml --json m.yaml",
     "plan --model m.yaml --map map.yaml --json map.yaml",
-    "plan --model m.yaml --map map.yaml -o map",
 )
 TWICE = (
     "terrain train drive.csv -o x --json x",

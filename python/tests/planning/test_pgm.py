@@ -45,7 +45,7 @@ def test_an_image_that_is_wrong_is_refused_by_name(tmp_path: Path, subtests: pyt
         (b"P5\n2 2\n255\n123", "is cut off: 3 of 4 pixels"),
         (b"P5\n2 1\n10\n\x05\x0b", "has a pixel of 11, where white is 10"),
         (b"P2\n2 1\n255\n1 x", "holds something that is not a number"),
-        (b"P2\n2 1\n255\n1 -1", "holds something that is not a grey level"),
+        *((b"P2\n2 1\n255\n1 " + level, "holds something that is not") for level in (b"-1", b"nan", b"1e99")),
         (b"P5\n99999 99999\n255\n", "more than"),
     ]:
         with subtests.test(data=data, said=said):

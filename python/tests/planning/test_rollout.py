@@ -14,9 +14,9 @@ from sample_models import LIMITS, Made, make_model
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
-from slipwise.errors import ModelError, SettingsError
+from slipwise.errors import SettingsError
 from slipwise.ground import Grade
-from slipwise.models import Model, load_model
+from slipwise.models import Model
 from slipwise.planning import Costmap, Start, command_buffer, rollout, sample_futures
 from slipwise.prediction import predict
 
@@ -101,30 +101,18 @@ def test_covariance_is_that_of_a_prediction_without_pose_noise(
     assert found[:, -1, 3] == pytest.approx(expected[-1][rows, columns], rel=0.05, abs=1e-5)
 
 
-def test_same_bytes_for_any_number_of_threads_and_any_layout(
-    model: Model, commands: NDArray[np.float64]
-) -> None:
-    one = rollout(model, commands, DT, outputs=("path", "end"))
-    fast = command_buffer(N, K, np.float64)
-    fast[:] = commands
-    for other in (
-        rollout(model, commands, DT, outputs=("path", "end"), threads=3),
-        rollout(model, fast, DT, outputs=("path", "end")),
-    ):
-        assert one.path is not None
-        assert other.path is not None
-        assert one.end is not None
-        assert other.end is not None
-        assert one.path.tobytes() == other.path.tobytes()
-        assert one.end.tobytes() == other.end.tobytes() == one.path[:, -1].tobytes()
-
-
 def test_every_instruction_level_gives_the_same_poses(model: Model, commands: NDArray[np.float64]) -> None:
     levels = _core.instruction_levels()
     assert levels[0] == "portable"
     portable = rollout(model, commands, DT, level="portable").path
     for level in levels:
         assert rollout(model, commands, DT, level=level).path == pytest.approx(portable, abs=1e-10)
+    lying_fast = command_buffer(N, K, np.float64)
+    lying_fast[:] = commands
+    again = rollout(model, lying_fast, DT, level="portable").path
+    assert again is not None
+    assert portable is not None
+    assert again.tobytes() == portable.tobytes()
 
 
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
@@ -219,37 +207,17 @@ def test_sampled_futures_scatter_around_the_rollout(model: Model, commands: NDAr
     ],
 )
 def test_what_cannot_be_rolled_out_is_refused(
-    model: Model, commands: NDArray[np.float64], change: dict[str, Any], words: str
+    commands: NDArray[np.float64], change: dict[str, Any], words: str
 ) -> None:
     arguments = {"commands": commands, "dt": DT} | change
     with pytest.raises(SettingsError, match=words):
-        rollout(model, **arguments)
+        rollout(direct(), **arguments)
 
 
 def test_buffers_of_another_shape_are_refused(model: Model, commands: NDArray[np.float64]) -> None:
     small = rollout(model, commands[:3], DT)
     with pytest.raises(SettingsError, match="array for path has shape"):
         rollout(model, commands, DT, out=small)
-
-
-@pytest.mark.parametrize(
-    "fault", [{"resolution": 0.0}, {"cells": np.zeros((0, 3))}, {"origin": (np.nan, 0.0)}]
-)
-def test_wrong_costmaps_are_refused(
-    model: Model, commands: NDArray[np.float64], fault: dict[str, Any]
-) -> None:
-    costmap = Costmap(**({"cells": np.zeros((2, 3)), "resolution": 0.1} | fault))
-    with pytest.raises(SettingsError, match="costmap"):
-        rollout(model, commands, DT, outputs=("costs",), costmap=costmap)
-
-
-def test_a_model_of_another_schema_is_refused_before_it_can_be_rolled_out(
-    model: Model, tmp_path: Any
-) -> None:
-    path = model.save(tmp_path / "model.yaml")
-    path.write_text(path.read_text().replace("slipwise_model: 4", "slipwise_model: 99"))
-    with pytest.raises(ModelError, match="schema version 99"):
-        load_model(path)
 
 
 def test_rollouts_on_a_grade_are_those_of_predict_from_every_heading() -> None:
