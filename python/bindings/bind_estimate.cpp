@@ -4,16 +4,13 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
-#include "slipwise/filter/batch.hpp"
 #include "slipwise/filter/causal_filter.hpp"
 #include "slipwise/filter/iekf.hpp"
 #include "slipwise/filter/observability.hpp"
-#include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/filter/prior.hpp"
 #include "slipwise/filter/weighting.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
@@ -103,11 +100,6 @@ void bind_settings(nb::module_& m) {
       .def_rw("largest_basis", &ModelAverageSettings::largest_basis)
       .def_rw("change", &ModelAverageSettings::change)
       .def_rw("surfaces", &ModelAverageSettings::surfaces);
-  nb::class_<BatchSettings>(m, "BatchSettings")
-      .def(nb::init<>())
-      .def_rw("iterations", &BatchSettings::iterations)
-      .def_rw("tolerance", &BatchSettings::tolerance)
-      .def_rw("huber", &BatchSettings::huber);
 }
 
 void bind_results(nb::module_& m) {
@@ -126,7 +118,6 @@ void bind_results(nb::module_& m) {
       .value("Downweighted", Status::Downweighted)
       .value("Rejected", Status::Rejected)
       .value("NotConverged", Status::NotConverged);
-  m.def("advice", &advice, "status"_a, "What the status means and what to do about it.");
   nb::class_<IekfUpdate>(m, "IekfUpdate", "One segment's update.")
       .def_ro("estimate", &IekfUpdate::estimate)
       .def_ro("innovation", &IekfUpdate::innovation)
@@ -134,32 +125,12 @@ void bind_results(nb::module_& m) {
       .def_ro("nis", &IekfUpdate::nis)
       .def_ro("weight", &IekfUpdate::weight)
       .def_ro("status", &IekfUpdate::status);
-  nb::class_<BatchFit>(m, "BatchFit", "The result of a batch fit.")
-      .def_ro("estimate", &BatchFit::estimate)
-      .def_ro("cost", &BatchFit::cost)
-      .def_ro("iterations", &BatchFit::iterations)
-      .def_ro("status", &BatchFit::status);
   nb::class_<AverageState>(m, "AverageState", "The average of several models over the union of their terms.")
       .def_ro("estimate", &AverageState::estimate)
       .def_ro("prior_std", &AverageState::prior_std)
       .def_ro("variance_ratio", &AverageState::variance_ratio)
       .def_ro("noise_scale", &AverageState::noise_scale)
       .def_ro("weights", &AverageState::weights);
-  nb::class_<Observability>(m, "Observability", "Posterior against prior variance.")
-      .def_ro("ratio", &Observability::ratio)
-      .def_ro("weakest", &Observability::weakest)
-      .def_ro("weakest_ratio", &Observability::weakest_ratio);
-}
-
-BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
-                            const std::vector<const InputHistory*>& inputs, const std::vector<Segment>& segments,
-                            const std::vector<Eigen::Matrix3d>& noise, const BatchSettings& settings) {
-  check_inputs(inputs, segments.size(), noise.size());
-  std::vector<BatchDatum> data;
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    data.push_back({*inputs[i], segments[i], noise[i]});
-  }
-  return batch_fit(model, prior, data, settings);
 }
 
 }  // namespace
@@ -171,7 +142,6 @@ void bind_estimate(nb::module_& m) {
         nb::overload_cast<const MotionModel&, const Estimate&, const InputHistory&, const Segment&,
                           const Eigen::Matrix3d&, const IekfSettings&>(&iekf_update),
         "model"_a, "prior"_a, "inputs"_a, "segment"_a, "noise"_a, "settings"_a);
-  m.def("batch_fit", &batch_fit_segments, "model"_a, "prior"_a, "inputs"_a, "segments"_a, "noise"_a, "settings"_a);
   m.def(
       "prior_estimate",
       [](const MotionModel& model, double v, double omega, const PriorSettings& settings) {
@@ -204,48 +174,11 @@ void bind_estimate(nb::module_& m) {
         return correlated_pairs(covariance, least);
       },
       "covariance"_a, "least"_a, "Pairs of parameters with at least this correlation, the closest first.");
-  m.def(
-      "observability",
-      [](const Estimate& posterior, const Eigen::VectorXd& prior_std) { return observability(posterior, prior_std); },
-      "posterior"_a, "prior_std"_a);
   nb::class_<ChangeTest>(m, "ChangeTest", "The test of one segment for a change of terrain.")
       .def(nb::init<>())
       .def_ro("log_odds", &ChangeTest::log_odds)
       .def_ro("segments", &ChangeTest::segments)
       .def_ro("alarm", &ChangeTest::alarm);
-  m.def(
-      "updated_weights",
-      [](const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores, const Eigen::VectorXd& prior,
-         const WeightingSettings& settings,
-         std::size_t observed) { return updated_weights(weights, log_scores, prior, settings, observed); },
-      "weights"_a, "log_scores"_a, "prior"_a, "settings"_a, "seen"_a,
-      "The weights after models predicted with these log scores, [M], `seen` segments having spoken before; `prior` "
-      "are "
-      "the prior ones.");
-  m.def(
-      "common_log_scores",
-      [](const Eigen::VectorXd& weights, const std::vector<Eigen::Vector3d>& innovations,
-         const std::vector<Eigen::Matrix3d>& covariances) {
-        return common_log_scores(weights, innovations, covariances);
-      },
-      "weights"_a, "innovations"_a, "covariances"_a,
-      "Log scores of models that predicted one segment, under the mean of their covariances, [M].");
-  nb::class_<ScoredSegment>(m, "ScoredSegment", "A segment as it was predicted.")
-      .def_ro("innovation", &ScoredSegment::innovation)
-      .def_ro("innovation_covariance", &ScoredSegment::innovation_covariance)
-      .def_ro("nis", &ScoredSegment::nis);
-  nb::class_<PredictiveScore>(m, "PredictiveScore", "Scores a model learned elsewhere; learns the size of its noise.")
-      .def(nb::init<const NoiseSettings&>(), "settings"_a)
-      .def(nb::init<const PredictiveScore&>(), "other"_a, "A copy.")
-      .def(
-          "score",
-          [](PredictiveScore& score, const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
-             const Segment& segment) {
-            check_estimate(model, estimate);
-            return score.score(model, estimate, inputs, segment);
-          },
-          "model"_a, "estimate"_a, "inputs"_a, "segment"_a)
-      .def_prop_ro("noise_scale", &PredictiveScore::noise_scale);
   nb::class_<ModelAverage>(m, "ModelAverage", "Causal filters of several bases, weighted by how well they predict.")
       .def(
           "__init__",

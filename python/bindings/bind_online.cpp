@@ -201,8 +201,6 @@ void bind_surface_events(nb::module_& m) {
 }  // namespace
 
 void bind_online(nb::module_& m) {
-  m.def("fraction_inside", &fraction_inside, "squared"_a, "dof"_a,
-        "Probability of x, y, yaw to lie within a squared Mahalanobis distance of a Student t.");
   nb::enum_<Stream>(m, "Stream", "Which stream a measurement came from.")
       .value("Command", Stream::Command)
       .value("Wheels", Stream::Wheels)

@@ -182,12 +182,6 @@ void bind_segment(nb::module_& m) {
       "pose_noise_covariance",
       [](const Pose2& measured, const MotionNoise& noise) { return pose_noise_covariance(measured, noise); },
       "measured"_a, "noise"_a);
-  m.def(
-      "segment_noise",
-      [](const SegmentPath& path, const Pose2& measured, const MotionNoise& noise) {
-        return segment_noise(path, measured, noise, Eigen::Vector3d::Ones());
-      },
-      "path"_a, "measured"_a, "noise"_a, "Covariance of a measured segment: of slip, and of what was measured.");
 }
 
 }  // namespace slipwise::bindings

@@ -87,11 +87,6 @@ void bind_slip(nb::module_& m) {
   m.def("named_basis", &named_basis, "name"_a, "A basis by its published name.");
   m.def("basis_names", &basis_names, "Names of all bases that ship.");
   m.def(
-      "union_basis",
-      [](std::string name, const std::vector<Basis>& bases) { return union_basis(std::move(name), bases); }, "name"_a,
-      "bases"_a, "The basis that has every term of the given ones, each once.");
-  m.def("parameter_places", &parameter_places, "part"_a, "whole"_a, "Where each parameter of part stands in whole.");
-  m.def(
       "slip_rate",
       [](const Basis& basis, const Eigen::VectorXd& alpha, const SlipState& state) {
         check_size(alpha, static_cast<Eigen::Index>(basis.size()), "a slip rate");

@@ -63,11 +63,6 @@ Eigen::RowVector3d velocity_along(const Eigen::Vector2d& at, const Eigen::Vector
   return {along.x(), along.y(), along.y() * at.x() - along.x() * at.y()};
 }
 
-/// What yaw alone adds to the velocity along a direction at `at`.
-Eigen::RowVector3d turning_along(const Eigen::Vector2d& at, const Eigen::Vector2d& along) {
-  return {0.0, 0.0, along.y() * at.x() - along.x() * at.y()};
-}
-
 bool finite(double value) { return std::isfinite(value); }
 
 double steering_rate_of(const WheelReadings& readings, Eigen::Index wheel) {
@@ -91,13 +86,9 @@ void check_wheel(const Wheel& wheel, bool hinged) {
 
 /// One constraint: a velocity of a contact along a direction is what is read.
 struct Row {
-  Eigen::RowVector3d of_twist;                             ///< derivative of the velocity by the twist
-  double reading = 0.0;                                    ///< [m/s]
-  double weight = 1.0;                                     ///< 1 / standard deviation
-  Eigen::Index wheel = -1;                                 ///< -1: of no wheel
-  double by_speed = 0.0;                                   ///< derivative of the reading by the wheel's speed [m]
-  Eigen::RowVector3d turned = Eigen::RowVector3d::Zero();  ///< derivative of of_twist by the steering angle
-  double reading_turned = 0.0;                             ///< derivative of the reading by the steering angle
+  Eigen::RowVector3d of_twist;  ///< derivative of the velocity by the twist
+  double reading = 0.0;         ///< [m/s]
+  double weight = 1.0;          ///< 1 / standard deviation
 };
 
 /// Sideways motion is taken as none, where no wheel tells it.
@@ -110,17 +101,11 @@ std::vector<Row> rows_of(const std::vector<Wheel>& wheels, const WheelNoise& noi
     const Wheel& wheel = wheels[i];
     const auto place = static_cast<Eigen::Index>(i);
     const Placed at = placed(wheel, hinge, readings.steering[place], steering_rate_of(readings, place), readings);
-    const Eigen::Vector2d moved = left_of(at.arm);  // derivative of the contact by the steering angle
     const auto add = [&](double angle, double std, double by_speed) {
-      const Eigen::Vector2d along = direction(angle), turned = left_of(along);
+      const Eigen::Vector2d along = direction(angle);
       const double speed = by_speed != 0.0 ? by_speed * readings.speed[place] : 0.0;
-      rows.push_back({.of_twist = velocity_along(at.at, along),
-                      .reading = speed - along.dot(at.swing),
-                      .weight = 1.0 / std,
-                      .wheel = place,
-                      .by_speed = by_speed,
-                      .turned = velocity_along(at.at, turned) + turning_along(moved, along),
-                      .reading_turned = at.arm_rate * along.dot(at.arm) - turned.dot(at.swing)});
+      rows.push_back(
+          {.of_twist = velocity_along(at.at, along), .reading = speed - along.dot(at.swing), .weight = 1.0 / std});
     };
     const double roller = wheel.roller.value_or(0.0);
     if (finite(readings.speed[place])) {
@@ -265,28 +250,6 @@ WheelTwist WheelLayout::twist(const WheelReadings& readings) const {
     throw std::invalid_argument("the readings of this moment do not tell a motion; too few wheels were read");
   }
   return solved(system);
-}
-
-WheelTwistLinearization WheelLayout::linearize_twist(const WheelReadings& readings) const {
-  const auto count = static_cast<Eigen::Index>(wheels_.size());
-  WheelTwistLinearization result{twist(readings), Eigen::Matrix3Xd::Zero(3, count), Eigen::Matrix3Xd::Zero(3, count)};
-  const WheelTwist& value = result.value;
-  const Eigen::Vector3d t(value.twist.v, value.twist.vy, value.twist.omega);
-  const double ratio = value.freedom > 0 ? std::max(value.chi2 / static_cast<double>(value.freedom), 1.0) : 1.0;
-  const Eigen::Matrix3d nominal = value.covariance / ratio;
-  const auto rows = rows_of(wheels_, noise_, hinge_, readings);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Row& row = rows[i];
-    const Eigen::Vector3d gain = row.weight * row.weight * (nominal * row.of_twist.transpose());
-    result.by_speed.col(row.wheel) += gain * row.by_speed;
-    if (wheels_[static_cast<std::size_t>(row.wheel)].steered) {
-      // Of the normal equations A^T W (b - A t) = 0, by what turns A and b.
-      result.by_steering.col(row.wheel) +=
-          row.weight * row.weight * value.residual[static_cast<Eigen::Index>(i)] * (nominal * row.turned.transpose()) +
-          gain * (row.reading_turned - row.turned.dot(t));
-    }
-  }
-  return result;
 }
 
 WheelTargets WheelLayout::wheels_for(const BodyTwist& twist, const WheelReadings& now) const {

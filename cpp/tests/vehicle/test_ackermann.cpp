@@ -5,7 +5,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "finite_difference.hpp"
 #include "slipwise/vehicle/ackermann.hpp"
 
 namespace slipwise {
@@ -18,15 +17,6 @@ TEST_CASE("straight wheels drive straight") { CHECK(kCar.twist(3.0, 0.0).omega =
 TEST_CASE("wheels to the left turn to the left, and backwards to the right") {
   CHECK(kCar.twist(2.0, std::numbers::pi / 4.0).omega == doctest::Approx(2.0 / 2.5));
   CHECK(kCar.twist(-2.0, std::numbers::pi / 4.0).omega == doctest::Approx(-2.0 / 2.5));
-}
-
-TEST_CASE("the car's Jacobian is the derivative of its twist") {
-  const auto twist = [](const Eigen::VectorXd& input) -> Eigen::VectorXd {
-    const BodyTwist body = kCar.twist(input[0], input[1]);
-    return Eigen::Vector2d(body.v, body.omega);
-  };
-  const auto numeric = tests::finite_difference(twist, Eigen::Vector2d(4.0, 0.3), 0.05);
-  CHECK(tests::jacobian_error(kCar.twist_jacobian(4.0, 0.3), numeric) < tests::kDerivativeTolerance);
 }
 
 TEST_CASE("a wheelbase that is not positive is refused") {

@@ -225,41 +225,6 @@ TEST_CASE("wheels beside their joint turn against each other while the joint tur
   CHECK(found.chi2 < 1e-16);
 }
 
-TEST_CASE("derivatives by the angle of a caster whose contact moves with it are those of finite differences") {
-  const Wheel trailing{
-      .x = -1.2, .y = 0.1, .radius = 0.3, .steered = true, .behind_hinge = true, .pivot = Hinge{-1.1, 0.05}};
-  const WheelLayout layout({{.y = 0.5, .radius = 0.3}, {.y = -0.5, .radius = 0.3}, trailing}, {}, Hinge{.x = -0.5});
-  WheelReadings base{.speed = Eigen::Vector3d(3.0, 4.0, 2.8), .steering = Eigen::Vector3d(0.0, 0.0, 0.3)};
-  base.hinge = 0.2;
-  base.hinge_rate = 0.4;
-  base.steering_rate = Eigen::Vector3d(0.0, 0.0, -0.7);
-  const auto of_angle = [&](const Eigen::VectorXd& angle) -> Eigen::VectorXd {
-    auto now = base;
-    now.steering[2] = angle[0];
-    const BodyTwist t = layout.twist(now).twist;
-    return Eigen::Vector3d(t.v, t.vy, t.omega);
-  };
-  const Eigen::MatrixXd exact = layout.linearize_twist(base).by_steering.col(2);
-  const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, 0.3);
-  CHECK(tests::jacobian_error(exact, tests::finite_difference(of_angle, at, 0.05)) < tests::kDerivativeTolerance);
-}
-
-TEST_CASE("derivatives of the twist are those of finite differences") {
-  const WheelLayout layout = swerve();
-  auto base = readings_of(layout, layout.wheels_for(kMotion, at_zero(4)));
-  base.speed += Eigen::Vector4d(0.3, -0.2, 0.1, 0.4);  // readings contradict each other
-  const auto exact = layout.linearize_twist(base);
-  const auto of_readings = [&](const Eigen::VectorXd& all) -> Eigen::VectorXd {
-    const BodyTwist t = layout.twist({.speed = all.head<4>(), .steering = all.tail<4>()}).twist;
-    return Eigen::Vector3d(t.v, t.vy, t.omega);
-  };
-  Eigen::VectorXd at(8);
-  at << base.speed, base.steering;
-  Eigen::MatrixXd jacobian(3, 8);
-  jacobian << exact.by_speed, exact.by_steering;
-  CHECK(tests::jacobian_error(jacobian, tests::finite_difference(of_readings, at, 0.05)) < tests::kDerivativeTolerance);
-}
-
 TEST_CASE("noise within the stated one is covered by the covariance, and a slipping wheel widens it") {
   const WheelLayout layout = mecanum();
   const auto clean = readings_of(layout, layout.wheels_for(kMotion, at_zero(4)));

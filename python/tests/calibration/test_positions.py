@@ -11,7 +11,6 @@ import pytest
 from numpy.typing import NDArray
 from sample_positions import ANTENNA, BASIS, HORIZONS, SECONDS, SETTINGS, SLIP, commands
 
-from slipwise import _core
 from slipwise.calibration import Settings, calibrate
 from slipwise.calibration.core_settings import STRAIGHT_SIDE_SLIP, core_settings
 from slipwise.calibration.learned_log import learn_log
@@ -19,6 +18,7 @@ from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import SettingsError
 from slipwise.logs import Log, Run
+from slipwise.student import fraction_inside
 from slipwise_sim.known_robot import KnownRobot, known_run
 
 Floats = NDArray[np.float64]
@@ -53,7 +53,7 @@ def slip_errors(log: Log, input_name: str) -> tuple[Floats, Floats, float]:
     apart[:, 2] = np.angle(np.exp(1j * apart[:, 2]))
     squares = np.einsum("ni,ni->n", apart, np.linalg.solve(first.covariance, apart[..., None])[..., 0])
     inside = [
-        _core.fraction_inside(square, dof) < 0.95 for square, dof in zip(squares, first.dof, strict=True)
+        fraction_inside(square, dof) < 0.95 for square, dof in zip(squares, first.dof, strict=True)
     ]
     return error / std, std, float(np.mean(inside))
 

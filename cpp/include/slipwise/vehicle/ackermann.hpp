@@ -2,7 +2,6 @@
 // Cars with steered front wheels: body twist of the rear axle from speed and steering angle (the bicycle model).
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
 #include <stdexcept>
 
@@ -24,12 +23,6 @@ struct Ackermann {
   /// `v` [m/s] at the rear axle, `steer` [rad] of the middle of the front axle, to the left.
   BodyTwist twist(double v, double steer) const {
     return {.v = v, .vy = 0.0, .omega = v * std::tan(steer) / wheelbase};
-  }
-
-  /// Derivative of (v, omega) by (v, steer).
-  Eigen::Matrix2d twist_jacobian(double v, double steer) const {
-    const double tangent = std::tan(steer);
-    return (Eigen::Matrix2d() << 1.0, 0.0, tangent / wheelbase, v * (1.0 + tangent * tangent) / wheelbase).finished();
   }
 };
 

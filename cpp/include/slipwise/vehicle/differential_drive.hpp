@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differential and skid-steer drives: body twist from wheel speeds and back (thesis 2.2, with wheel_separation = 2c).
+// Differential and skid-steer drives: body twist from wheel speeds (thesis 2.2, with wheel_separation = 2c).
 #pragma once
 
-#include <Eigen/Core>
 #include <stdexcept>
 
 #include "slipwise/lie/body_twist.hpp"
@@ -32,18 +31,6 @@ struct DifferentialDrive {
     return {.v = wheel_radius * (wheels.left + wheels.right) / 2.0,
             .vy = 0.0,
             .omega = wheel_radius * (wheels.right - wheels.left) / wheel_separation};
-  }
-
-  WheelSpeeds wheel_speeds(const BodyTwist& twist) const {
-    const double difference = twist.omega * wheel_separation / 2.0;
-    return {.left = (twist.v - difference) / wheel_radius, .right = (twist.v + difference) / wheel_radius};
-  }
-
-  /// Derivative of (v, omega) by (left, right); it is constant.
-  Eigen::Matrix2d twist_jacobian() const {
-    return (Eigen::Matrix2d() << wheel_radius / 2.0, wheel_radius / 2.0, -wheel_radius / wheel_separation,
-            wheel_radius / wheel_separation)
-        .finished();
   }
 };
 

@@ -56,12 +56,6 @@ struct WheelTwist {
   Eigen::Index freedom = 0;    ///< rows more than a twist needs; chi2 is about this where nothing slips
 };
 
-struct WheelTwistLinearization {
-  WheelTwist value;
-  Eigen::Matrix3Xd by_speed;     ///< [3, wheels]; zero for a speed that was not read
-  Eigen::Matrix3Xd by_steering;  ///< [3, wheels]; zero for a wheel that is not steered
-};
-
 /// What wheels must do to make a twist.
 struct WheelTargets {
   Eigen::VectorXd speed;     ///< [wheels], [rad/s]
@@ -84,7 +78,6 @@ class WheelLayout {
   /// Weighted least squares over all rows. \throws std::invalid_argument when readings have another length, are not
   /// finite, or are too few for a twist.
   WheelTwist twist(const WheelReadings& readings) const;
-  WheelTwistLinearization linearize_twist(const WheelReadings& readings) const;
 
   /// The inverse. `now` is where steering and hinge are; its speeds are ignored. A steered wheel points to where it
   /// rolls without sliding once its steering rests.
