@@ -128,20 +128,6 @@ def test_what_is_wrong_is_said_and_changes_nothing(log: Log) -> None:
     assert learner.model().content.covariance == pushed("wheel").model().content.covariance
 
 
-def test_forgetting_makes_slip_less_sure() -> None:
-    slipping = Drive(seconds=60.0, seed=4, basis=_core.named_basis("edd-2"), alpha=(-0.1, -0.4))
-    learner = sw.MotionLearner("wheel")
-    learner.start_run("monday")
-    push_rows(learner, rows_of(simulated_log(slipping)))
-    before = learner.model()
-    learner.forget(0.5)
-    after = learner.model()
-    place = [parameter.name for parameter in before.content.parameters].index("ang.w")
-    assert after.content.parameters[place].std > before.content.parameters[place].std
-    with pytest.raises(SlipwiseError, match="between 0 and 1"):
-        learner.forget(1.5)
-
-
 def test_a_learner_that_follows_no_disturbance_has_a_model_without_one(log: Log) -> None:
     settings = sw.make_settings({"slip_disturbance": {"learn": False}})
     learner = sw.MotionLearner("command", settings)

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -70,7 +71,7 @@ def test_a_start_model_that_remembers_surfaces_is_begun_with(
     drive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     first, second = tmp_path / "first.yaml", tmp_path / "second.yaml"
-    replay = ["live", "--replay", str(drive), "--rate", "0", "--memory"]
+    replay = ["live", "--replay", str(drive), "--rate", "0", "--input", "wheel", "--memory"]
     assert run([*replay, "--set", "live.surface=hall", "--quiet", "-o", str(first)]) == 0
     capsys.readouterr()
     assert run([*replay, "--model", str(first), "-o", str(second)]) == 0
@@ -145,8 +146,9 @@ def test_lines_on_a_pipe_are_answered_with_lines(drive: Path) -> None:
     assert said[-1]["validity"] == "estimated"
 
 
-def test_settings_stand_in_a_file_and_the_command_line_goes_before_it(drive: Path, tmp_path: Path) -> None:
-    settings = tmp_path / "live.toml"
+def test_settings_stand_in_a_file_and_the_command_line_goes_before_it(tmp_path: Path) -> None:
+    drive, settings = tmp_path / "drive.csv", tmp_path / "live.toml"
+    sw.save_log(simulated_log(replace(SLIP, seconds=20.0)), drive)
     settings.write_text(
         f'basis = "edd-2"\n[live]\nname = "from-file"\ncache = "{tmp_path}/cache"\ninput = "wheel"\n'
     )

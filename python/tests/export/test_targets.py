@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every target names its origin, refuses a bad verdict, and cannot be tricked by the text of a model file."""
+"""Every target names its origin and refuses a bad verdict."""
 
 from __future__ import annotations
 
@@ -30,13 +30,6 @@ FITTING = {
     "c-header": named("edd-2", ang__w=-0.3),
 }
 VERSIONS = ExportOptions(px4="1.17", ardupilot="4.6", ros_distro="jazzy")
-
-
-def content(target: Target, text: str) -> object:
-    """Return what the target's own reader sees."""
-    if target.name in ("px4", "ardupilot"):
-        return [line for line in text.splitlines() if line and not line.startswith("#")]
-    return yaml.safe_load(text)
 
 
 def fitting(target: Target) -> Made:
@@ -94,24 +87,6 @@ def test_the_kinematic_baseline_is_exported(subtests: pytest.Subtests) -> None:
             assert baseline.motion.size == 0
             made = export_model(baseline, target.name, name="m.yaml", options=VERSIONS)
             assert "learned by slipwise" in made.text
-
-
-HOSTILE = "evil */ int x; /* \n#define V 2\n??/\nnode: {a: 1} \u2028 end"
-
-
-def test_text_of_a_model_file_cannot_leave_the_comment(subtests: pytest.Subtests) -> None:
-    for target in TARGETS:
-        with subtests.test(target=target):
-            made = fitting(target)
-            plain, hostile = (
-                export_model(make_model(each), target.name, name="m.yaml", options=VERSIONS).text
-                for each in (made, replace(made, log=HOSTILE, sentence=HOSTILE))
-            )
-            if target.name == "c-header":
-                assert hostile.split("*/", 1)[1] == plain.split("*/", 1)[1]
-                assert "??" not in hostile.split("*/", 1)[0]
-            else:
-                assert content(target, hostile) == content(target, plain)
 
 
 def test_the_same_model_gives_the_same_bytes() -> None:
