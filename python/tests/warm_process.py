@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import traceback
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -55,7 +55,14 @@ def _warm() -> subprocess.Popen[str]:
     )
 
 
-def run_forked(arguments: Iterable[object], folder: Path, *, seconds: int, memory: int = 0) -> Ended:
+def run_forked(
+    arguments: Iterable[object],
+    folder: Path,
+    *,
+    seconds: int,
+    memory: int = 0,
+    environment: Mapping[str, str] | None = None,
+) -> Ended:
     """Run a command line in a folder, within some time [s] and, unless 0, some address space [bytes]."""
     warm = _warm()
     assert warm.stdin is not None
@@ -67,6 +74,7 @@ def run_forked(arguments: Iterable[object], folder: Path, *, seconds: int, memor
             "folder": str(folder),
             "seconds": seconds,
             "memory": memory,
+            "environment": dict(environment or {}),
             "out": str(out),
             "err": str(err),
         }
@@ -82,6 +90,7 @@ def _child(request: dict[str, object]) -> None:
 
     signal.alarm(int(str(request["seconds"])))
     os.chdir(str(request["folder"]))
+    os.environ.update(request["environment"])  # type: ignore[call-overload]
     for number, name in ((0, os.devnull), (1, request["out"]), (2, request["err"])):
         opened = os.open(str(name), os.O_RDWR | os.O_CREAT, 0o600)
         os.dup2(opened, number)

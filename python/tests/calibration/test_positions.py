@@ -52,9 +52,7 @@ def slip_errors(log: Log, input_name: str) -> tuple[Floats, Floats, float]:
     apart = first.measured - first.pose
     apart[:, 2] = np.angle(np.exp(1j * apart[:, 2]))
     squares = np.einsum("ni,ni->n", apart, np.linalg.solve(first.covariance, apart[..., None])[..., 0])
-    inside = [
-        fraction_inside(square, dof) < 0.95 for square, dof in zip(squares, first.dof, strict=True)
-    ]
+    inside = [fraction_inside(square, dof) < 0.95 for square, dof in zip(squares, first.dof, strict=True)]
     return error / std, std, float(np.mean(inside))
 
 

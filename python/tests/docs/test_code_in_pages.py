@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Code in the documents runs, on a small simulated log, and the commands in them exist."""
 
-import os
 import re
 import shlex
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +11,7 @@ import pytest
 import typer
 from python.tests.docs.pages import PAGES, ROOT, blocks, name_of
 from typer.core import TyperGroup
+from warm_process import run_forked
 
 import slipwise as sw
 from slipwise.calibration.calibrate_sequence import calibrate_sequence
@@ -95,13 +93,10 @@ def test_the_command_lines_of_the_readme_run(drive: Path, tmp_path: Path) -> Non
     lines = [line for page, line in command_lines() if page == "README.md" and "--pose-topic" not in line]
     assert len(lines) >= 9  # the one with --pose-topic wants a robot: the tests of the wires have one
     for line in lines:
-        words = [sys.executable, "-m", *shlex.split(line, comments=True)]
-        environment = os.environ | {"ROS_DISTRO": "jazzy"}
-        done = subprocess.run(
-            words, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300, check=False
-        )
-        if done.returncode:
-            failed.append(f"{line}: {done.returncode}\n{done.stdout[-500:]}{done.stderr[-500:]}")
+        words = shlex.split(line, comments=True)[1:]
+        done = run_forked(words, tmp_path, seconds=300, environment={"ROS_DISTRO": "jazzy"})
+        if done.code:
+            failed.append(f"{line}: {done.code}\n{done.out[-500:]}{done.err[-500:]}")
     assert not failed, "\n".join(failed)
 
 
