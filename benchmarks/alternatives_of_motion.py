@@ -27,7 +27,7 @@ from slipwise.calibration.prepared_run import WindowSet, prepare_run
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.statistics import held_out_half
 from slipwise.logs import Log, LogOptions, Poses, Run
-from slipwise.logs.log import CarCommands
+from slipwise.logs.log import CarCommands, Forces
 from slipwise.models import Model
 from slipwise.models.schema import LimitsSection
 
@@ -44,13 +44,17 @@ def motion_rows() -> Iterator[Beside]:
     yield from car_rows()
 
 
-def pushed_by_gravity(poses: Poses) -> Poses:
-    """Return poses without roll and pitch, and the push of gravity as a known force."""
-    assert poses.roll is not None
-    assert poses.pitch is not None
-    along = GRAVITY * np.sin(poses.pitch)
-    left = -GRAVITY * np.cos(poses.pitch) * np.sin(poses.roll)
-    return replace(level(poses), force_x=along, force_y=left)
+def pushed_by_gravity(log: Log) -> Log:
+    """Return the log without roll and pitch, and the push of gravity as a known force."""
+    runs = []
+    for run in log.runs:
+        poses = run.poses
+        assert poses.roll is not None
+        assert poses.pitch is not None
+        along = GRAVITY * np.sin(poses.pitch)
+        left = -GRAVITY * np.cos(poses.pitch) * np.sin(poses.roll)
+        runs.append(replace(run, poses=level(poses), forces=Forces(poses.t, along, left)))
+    return replace(log, runs=tuple(runs))
 
 
 def slope_rows() -> Iterator[Beside]:
@@ -62,7 +66,7 @@ def slope_rows() -> Iterator[Beside]:
         plain = [held_out(with_poses(log, level), Settings(), name) for log in logs]
         tilted = [held_out(log, Settings(), name) for log in logs]
         yield Beside("slopes", alternative, where, tuple(map(ratio, tilted, plain)))
-        forced = [held_out(with_poses(log, pushed_by_gravity), Settings(), name) for log in logs]
+        forced = [held_out(pushed_by_gravity(log), Settings(), name) for log in logs]
         yield Beside("known force (gravity's)", "no force", where, tuple(map(ratio, forced, plain)))
 
 

@@ -206,7 +206,8 @@ void bind_online(nb::module_& m) {
       .value("Wheels", Stream::Wheels)
       .value("Pose", Stream::Pose)
       .value("Attitude", Stream::Attitude)
-      .value("Gyro", Stream::Gyro);
+      .value("Gyro", Stream::Gyro)
+      .value("Force", Stream::Force);
   bind_settings(m);
   bind_recordings(m);
   bind_evidence(m);
@@ -264,6 +265,9 @@ void bind_online(nb::module_& m) {
                    }),
                    "Estimates of each pose source, where there are several.")
       .def("push_attitude", locked(&MotionLearner::push_attitude), "t"_a, "roll"_a, "pitch"_a)
+      .def("push_force",
+           locked([](MotionLearner& learner, double t, double x, double y) { learner.push_force({t, x, y}); }), "t"_a,
+           "x"_a, "y"_a, "A known force over the mass [m/s^2], which holds until the next one.")
       .def_prop_ro("attitude_mounting", locked(&MotionLearner::attitude_mounting),
                    "How the sensor of roll and pitch sits on the robot.")
       .def("push", locked([](MotionLearner& learner, const Recording& run) {

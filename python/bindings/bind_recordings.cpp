@@ -27,12 +27,11 @@ namespace slipwise::bindings {
 namespace {
 
 Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
-                    const std::optional<Rows>& gyro) {
+                    const std::optional<Rows>& gyro, const std::optional<Rows>& forces) {
   check_columns(attitudes, 3, "attitudes");
-  const bool with_source = poses.cols() >= 9;
+  const bool with_source = poses.cols() == 9;
   const bool with_std = poses.cols() != 5;
-  const bool with_force = poses.cols() == 11;
-  check_columns(poses, with_force ? 11 : (with_source ? 9 : (with_std ? 7 : 5)), "poses");
+  check_columns(poses, with_source ? 9 : (with_std ? 7 : 5), "poses");
   Recording run{
       .commands = samples(commands, "commands"), .wheels = samples(wheels, "wheels"), .attitudes = {}, .poses = {}};
   for (const auto& row : attitudes.rowwise()) {
@@ -47,8 +46,6 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
                          .y = row[2],
                          .yaw = std::isnan(row[3]) ? 0.0 : row[3],
                          .frame = static_cast<long>(row[4]),
-                         .gx = with_force ? row[9] : 0.0,
-                         .gy = with_force ? row[10] : 0.0,
                          .std = with_std ? PoseStd{.xy = row[5], .yaw = row[6]} : PoseStd{},
                          .source = with_source ? static_cast<std::size_t>(row[7]) : 0,
                          .fix = with_source ? pose_fix(static_cast<std::size_t>(row[8])) : PoseFix::Unknown,
@@ -58,6 +55,12 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
     check_columns(*gyro, 2, "gyro");
     for (const auto& row : gyro->rowwise()) {
       run.gyro.push_back({row[0], row[1]});
+    }
+  }
+  if (forces) {
+    check_columns(*forces, 3, "forces");
+    for (const auto& row : forces->rowwise()) {
+      run.forces.push_back({row[0], row[1], row[2]});
     }
   }
   return run;
@@ -103,16 +106,16 @@ void bind_recordings(nb::module_& m) {
       .def(
           "__init__",
           [](Recording* self, const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
-             const std::optional<Rows>& gyro) {
-            new (self) Recording(recording(commands, wheels, attitudes, poses, gyro));
+             const std::optional<Rows>& gyro, const std::optional<Rows>& forces) {
+            new (self) Recording(recording(commands, wheels, attitudes, poses, gyro, forces));
           },
-          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "gyro"_a = nb::none(),
+          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "gyro"_a = nb::none(), "forces"_a = nb::none(),
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
           "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where "
-          "unknown, or both left away; then the numbers of the source and of the fix may follow, and after these known "
-          "forces over the mass (force_x, force_y) [m/s^2]. A yaw of NaN says that only the position was measured. Of "
-          "a gyro rows of (t, yaw rate) [s, "
-          "rad/s].");
+          "unknown, or both left away; then the numbers of the source and of the fix may follow. A yaw of NaN says "
+          "that "
+          "only the position was measured. Of a gyro rows of (t, yaw rate) [s, rad/s]; of known forces over the mass "
+          "rows of (t, x, y) [s, m/s^2, m/s^2], each of which holds until the next one.");
   nb::class_<Rejected>(m, "Rejected", "Something rejected.")
       .def_ro("stream", &Rejected::stream)
       .def_ro("t", &Rejected::t)

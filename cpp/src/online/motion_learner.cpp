@@ -146,6 +146,24 @@ void MotionLearner::push_attitude(double t, double roll, double pitch) {
   work();
 }
 
+void MotionLearner::push(const Measurement& measurement) {
+  std::visit(Takes{[&](const CommandSample& command) { push_command(command.sample.t, command.sample.twist); },
+                   [&](const WheelSample& wheels) { push_wheels(wheels.sample.t, wheels.sample.twist); },
+                   [&](const KnownForce& known) { push_force(known); },
+                   [&](const Tilt& tilt) { push_attitude(tilt.t, tilt.roll, tilt.pitch); },
+                   [&](const MeasuredPose& pose) { push_pose(pose); },
+                   [&](const YawRate& sample) { push_gyro(sample.t, sample.rate); }},
+             measurement);
+}
+
+void MotionLearner::push_force(const KnownForce& known) {
+  KnownForce force = known;
+  force.t = counted(force.t);
+  stream_.push_force(force);
+  take_in();
+  work();
+}
+
 void MotionLearner::push_gyro(double t, double rate) {
   t = counted(t);
   stream_.push_gyro({t, rate});

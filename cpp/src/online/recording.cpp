@@ -3,6 +3,7 @@
 #include "slipwise/online/recording.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <iterator>
 #include <limits>
@@ -11,69 +12,47 @@
 namespace slipwise {
 namespace {
 
-/// Hands each measurement to `receiver`, in the order of the stamps.
+/// Hands each measurement to `receiver`, in the order of the stamps and, at one stamp, of the kinds.
 template <typename Receiver>
 void merge(const Recording& run, Receiver&& receiver) {
   constexpr double kEnd = std::numeric_limits<double>::infinity();
-  const auto stamp = [](const auto& samples, std::size_t i) { return i < samples.size() ? samples[i].t : kEnd; };
-  std::size_t command = 0;
-  std::size_t wheel = 0;
-  std::size_t attitude = 0;
-  std::size_t pose = 0;
-  std::size_t gyro = 0;
-  const std::size_t count =
-      run.commands.size() + run.wheels.size() + run.attitudes.size() + run.poses.size() + run.gyro.size();
+  const auto next = [](const auto& samples, std::size_t i) { return i < samples.size() ? samples[i].t : kEnd; };
+  std::array<std::size_t, std::variant_size_v<Measurement>> at{};
+  const std::size_t count = run.commands.size() + run.wheels.size() + run.forces.size() + run.attitudes.size() +
+                            run.poses.size() + run.gyro.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const double t = std::min({stamp(run.commands, command), stamp(run.wheels, wheel), stamp(run.attitudes, attitude),
-                               stamp(run.poses, pose), stamp(run.gyro, gyro)});
-    if (stamp(run.commands, command) == t) {
-      receiver.command(run.commands[command++]);
-    } else if (stamp(run.wheels, wheel) == t) {
-      receiver.wheels(run.wheels[wheel++]);
-    } else if (stamp(run.attitudes, attitude) == t) {
-      receiver.attitude(run.attitudes[attitude++]);
-    } else if (stamp(run.poses, pose) == t) {
-      receiver.pose(run.poses[pose++]);
-    } else {
-      receiver.gyro(run.gyro[gyro++]);
+    const std::array stamps{next(run.commands, at[0]),  next(run.wheels, at[1]), next(run.forces, at[2]),
+                            next(run.attitudes, at[3]), next(run.poses, at[4]),  next(run.gyro, at[5])};
+    const auto kind = static_cast<std::size_t>(std::ranges::min_element(stamps) - stamps.begin());
+    const std::size_t place = at[kind]++;
+    switch (kind) {
+      case 0:
+        receiver(Measurement(CommandSample{run.commands[place]}));
+        break;
+      case 1:
+        receiver(Measurement(WheelSample{run.wheels[place]}));
+        break;
+      case 2:
+        receiver(Measurement(run.forces[place]));
+        break;
+      case 3:
+        receiver(Measurement(run.attitudes[place]));
+        break;
+      case 4:
+        receiver(Measurement(run.poses[place]));
+        break;
+      default:
+        receiver(Measurement(run.gyro[place]));
     }
   }
 }
 
-struct ToLearner {
-  MotionLearner& learner;
-
-  void command(const InputSample& sample) const { learner.push_command(sample.t, sample.twist); }
-  void wheels(const InputSample& sample) const { learner.push_wheels(sample.t, sample.twist); }
-  void attitude(const Attitude& tilt) const { learner.push_attitude(tilt.t, tilt.roll, tilt.pitch); }
-  void pose(const MeasuredPose& measured) const { learner.push_pose(measured); }
-  void gyro(const YawRate& sample) const { learner.push_gyro(sample.t, sample.rate); }
-};
-
-struct ToStream {
-  SegmentStream& stream;
-
-  void command(const InputSample& sample) const { stream.push_command(sample); }
-  void wheels(const InputSample& sample) const { stream.push_wheels(sample); }
-  void attitude(const Attitude& tilt) const { stream.push_attitude({tilt.t, tilt.roll, tilt.pitch}); }
-  void pose(const MeasuredPose& measured) const { stream.push_pose(measured); }
-  void gyro(const YawRate& sample) const { stream.push_gyro(sample); }
-};
-
-/// Looks at what the stream's gates see of each command.
-struct ToExpected {
-  SegmentStream& stream;
-  std::vector<InputSample>& expected;
-
-  void command(const InputSample& sample) const {
-    stream.push_command(sample);
-    expected.push_back({sample.t, stream.commands().held_at(sample.t).value_or(BodyTwist{})});
-  }
-  void wheels(const InputSample& sample) const { stream.push_wheels(sample); }
-  void attitude(const Attitude& tilt) const { stream.push_attitude({tilt.t, tilt.roll, tilt.pitch}); }
-  void pose(const MeasuredPose& measured) const { stream.push_pose(measured); }
-  void gyro(const YawRate& sample) const { stream.push_gyro(sample); }
-};
+/// Drives a stream through a run.
+void stream_run(SegmentStream& stream, const Recording& run) {
+  stream.start_run();
+  merge(run, [&](const Measurement& measurement) { stream.push(measurement); });
+  stream.end_run();
+}
 
 struct ToGate {
   InputBuffer commands;
@@ -89,24 +68,25 @@ struct ToGate {
     append(found.outliers, more.outliers);
     append(found.jumps, more.jumps);
   }
-  void command(const InputSample& sample) { commands.push(sample); }
-  void wheels(const InputSample& sample) { wheels_known.push(sample); }
-  void attitude(const Attitude& /*tilt*/) const {}
-  void gyro(const YawRate& /*sample*/) const {}
-  void pose(const MeasuredPose& measured) { add(gate.push(measured, inputs())); }
+  void operator()(const Measurement& measurement) {
+    std::visit(Takes{[&](const CommandSample& command) { commands.push(command.sample); },
+                     [&](const WheelSample& wheels) { wheels_known.push(wheels.sample); },
+                     [&](const MeasuredPose& pose) { add(gate.push(pose, inputs())); }, [](const auto& /*other*/) {}},
+               measurement);
+  }
 };
 
 }  // namespace
 
-void push(MotionLearner& learner, const Recording& run) { merge(run, ToLearner{learner}); }
+void push(MotionLearner& learner, const Recording& run) {
+  merge(run, [&](const Measurement& measurement) { learner.push(measurement); });
+}
 
 CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> runs) {
   SegmentStream stream(settings);
   CutRuns cut;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    stream.start_run();
-    merge(runs[i], ToStream{stream});
-    stream.end_run();
+    stream_run(stream, runs[i]);
     for (StreamItem& item : stream.take_items()) {
       if (auto* segment = std::get_if<DrivenSegment>(&item)) {
         cut.segments.push_back(std::move(*segment));
@@ -124,9 +104,7 @@ CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> 
 MotionEvidence motion_evidence(const StreamSettings& settings, std::span<const Recording> runs) {
   SegmentStream stream(settings);
   for (const Recording& run : runs) {
-    stream.start_run();
-    merge(run, ToStream{stream});
-    stream.end_run();
+    stream_run(stream, run);
     stream.take_items();
     stream.take_rejected();
   }
@@ -139,7 +117,14 @@ std::vector<std::vector<InputSample>> expected_commands(const StreamSettings& se
   std::vector<std::vector<InputSample>> expected;
   for (const Recording& run : runs) {
     stream.start_run();
-    merge(run, ToExpected{stream, expected.emplace_back()});
+    auto& found = expected.emplace_back();
+    merge(run, [&](const Measurement& measurement) {
+      stream.push(measurement);
+      if (const auto* command = std::get_if<CommandSample>(&measurement)) {  // what the stream's gates see of it
+        const double t = command->sample.t;
+        found.push_back({t, stream.commands().held_at(t).value_or(BodyTwist{})});
+      }
+    });
     stream.end_run();
     stream.take_items();
     stream.take_rejected();

@@ -29,6 +29,8 @@ constexpr std::array<Words, kReasons> kWords{{
     {.name = "poor-pose", .text = "between poses whose errors are far larger than those of the first source"},
     {.name = "steep-attitude",
      .text = "roll and pitch of a sensor that is not mounted level, or of no robot that drives"},
+    {.name = "force-beside-attitude",
+     .text = "a known force beside roll and pitch, of which gravity follows: one of them must hold all that pushes"},
 }};
 
 const Words& words(Reason reason) { return kWords[static_cast<std::size_t>(reason)]; }

@@ -69,6 +69,7 @@ void SegmentStream::start_run() {
   commands_.clear();
   wheels_.clear();
   tilts_.clear();
+  forces_.clear();
   gyro_.restart();
   turned_until_.reset();
   gate_.restart();
@@ -146,31 +147,6 @@ void SegmentStream::push_wheels(const InputSample& sample) {
   push_input(Stream::Wheels, sample);
   if (wheels_.size() > before) {
     wheel_stamps_.push_back(sample.t);
-  }
-  advance(newest_ - settings_.latency);
-}
-
-std::optional<Tilt> SegmentStream::push_attitude(const Tilt& measured) {
-  std::optional<Tilt> tilt;
-  if (arrives(Stream::Attitude, measured.t, std::array{measured.roll, measured.pitch})) {
-    tilt = attitudes_.level(measured);
-    if (tilt) {
-      tilts_.push(*tilt);
-    } else {
-      reject(Stream::Attitude, Reason::SteepAttitude, measured.t);
-    }
-  }
-  advance(newest_ - settings_.latency);
-  return tilt;
-}
-
-void SegmentStream::push_gyro(const YawRate& sample) {
-  if (arrives(Stream::Gyro, sample.t, std::array{sample.rate})) {
-    gyro_.push(sample);
-    evidence_.push_gyro(sample);
-    if (settings_.heading_only) {
-      turn_on(sample);
-    }
   }
   advance(newest_ - settings_.latency);
 }
@@ -357,11 +333,16 @@ void SegmentStream::set_actuator_state(Segment& segment) const {
   }
 }
 
-/// What tilts the robot: where it is `foreseen`, as far as is known at the start.
+/// What tilts or pushes the robot: where it is `foreseen`, as far as is known at the start.
 void SegmentStream::stand_on_ground(Segment& segment, bool foreseen) const {
   const double oldest = settings_.unknown_after;
   segment.ground =
       foreseen ? tilts_.from(segment.start, oldest) : tilts_.along(path_start(segment), segment.end, oldest);
+  const auto force = foreseen ? forces_.at(segment.start) : forces_.mean(path_start(segment), segment.end);
+  if (force) {
+    segment.gx = force->x;
+    segment.gy = force->y;
+  }
 }
 
 /// Inputs are kept for segments that have begun, unless poses do not come for long.
@@ -381,6 +362,7 @@ void SegmentStream::trim() {
   commands_.drop_before(oldest);
   wheels_.drop_before(oldest);
   tilts_.drop_before(oldest);
+  forces_.drop_before(oldest);
   gyro_.drop_before(oldest);
   if (car_) {
     car_->drop_before(oldest);

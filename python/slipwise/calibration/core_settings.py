@@ -107,5 +107,6 @@ def _change_prior(hypotheses: _core.HypothesisSettings, **numbers: float) -> Non
 
 def car_of(settings: Settings) -> _core.CarPrior | None:
     """Return what is taken of a car commanded by throttle and steering, where the settings name one."""
-    car = settings.log_options().car
+    named = settings.live.vehicle
+    car = (settings.log_options() if named is None else settings.log_options(vehicle=named)).car
     return None if car is None else _core.CarPrior(car.top_speed, car.curvature, None)

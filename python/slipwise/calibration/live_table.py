@@ -58,13 +58,13 @@ class LiveTable(_Table):
     address: str | None = None  # where UDP is listened for, as host:port
     override_topic: str | None = None  # std_msgs/Bool: an operator drives
     input: Literal["command", "wheel"] | None = None
-    positions: bool = False  # poses are positions without a heading; a replayed log and ROS topics say so
-    gyro_alone: bool = False  # no poses come, and turns of a gyro are learned from; a replayed log says so
-    sources: list[
-        Annotated[str, Field(min_length=1)]
-    ] = []  # of poses, where there are several: the first first
+    positions: bool = False  # poses are positions without a heading; a log, lines and ROS topics say so
+    gyro_alone: bool = False  # no poses come, and turns of a gyro are learned from; said as positions are
+    sources: list[str] = []  # of poses, where there are several: the first first; fixes need one at least
+    vehicle: str | None = None  # a car that is commanded by throttle and steering, as --vehicle says
     model: str | None = None  # start model
     attitude: bool = False  # poses have a true roll and pitch: terms of gravity are tried
+    sideways: bool = False  # the robot drives sideways too: terms of its sideways speed are tried
     memory: bool = False  # remember surfaces, and begin with those of the start model
     surface: Annotated[str, Field(min_length=1, max_length=80)] | None = None  # name of the first surface
     surface_topic: str | None = None  # std_msgs/String: the surface's name, beside ~/terrain

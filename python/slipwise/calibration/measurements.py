@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a learner takes: commands, wheel speeds, poses and positions of its sources, a gyro, attitudes."""
+"""What a learner takes: commands, wheels, poses and positions of its sources, a gyro, attitudes, forces."""
 
 from __future__ import annotations
 
@@ -24,6 +24,7 @@ class Measurements:
     _wheels: bool
     _wheel_step: WheelStep
     _sideways: dict[str, SidewaysSeen]  # of each input
+    _gyro_alone: bool
     _sources: dict[str, int]  # of poses, by name
 
     @property
@@ -32,6 +33,16 @@ class Measurements:
         if car_of(self._settings) is not None:
             return THROTTLE
         return TWIST if self._sideways[self._input].span is None else SIDEWAYS
+
+    @property
+    def positions(self) -> bool:
+        """Whether it learns from positions, and not from poses."""
+        return self._positions
+
+    @property
+    def gyro_alone(self) -> bool:
+        """Whether it learns from turns of a gyro alone."""
+        return self._gyro_alone
 
     @property
     def tells_sources(self) -> bool:
@@ -136,6 +147,13 @@ class Measurements:
     def push_gyro(self, t: float, rate: float) -> None:
         """Take a yaw rate [rad/s], counter-clockwise, at a stamp [s]: turns between positions are its own."""
         self._core.push_gyro(t, rate)
+
+    def push_force(self, t: float, x: float, y: float) -> None:
+        """Take a known force over the mass from a stamp [s] on: along the x axis and to the left [m/s^2].
+
+        It holds until the next one, and pushes as gravity on a slope; beside roll and pitch it is rejected.
+        """
+        self._core.push_force(t, x, y)
 
     def push_attitude(self, t: float, roll: float, pitch: float) -> None:
         """Take roll and pitch [rad] at a stamp [s]; by REP-103 nose down is positive pitch."""

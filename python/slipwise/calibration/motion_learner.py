@@ -26,7 +26,7 @@ from slipwise.calibration.predictors import student_of
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.sideways_seen import SidewaysSeen
-from slipwise.calibration.sloping_ground import with_gravity
+from slipwise.calibration.sloping_ground import for_ground
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts
@@ -83,7 +83,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
         if input not in ("command", "wheel"):
             raise SettingsError(f"unknown input '{input}'", advice="use 'command' or 'wheel'")
         settings = settings or Settings()
-        self._input, self._settings = input, with_gravity(settings) if attitude else settings
+        self._input, self._settings = input, for_ground(settings, slopes=attitude, sideways=False)
         self._core = _core.MotionLearner(
             core_settings(
                 self._settings,
@@ -204,11 +204,6 @@ class MotionLearner(Measurements, RememberedSurfaces):
     def learned(self) -> bool:
         """Whether anything was learned yet, so that there is a model to judge."""
         return bool(self._core.model().segments)
-
-    @property
-    def positions(self) -> bool:
-        """Whether it learns from positions, and not from poses."""
-        return self._positions
 
     @property
     def sources(self) -> tuple[LearnedSource, ...]:

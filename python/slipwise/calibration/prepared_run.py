@@ -224,6 +224,8 @@ def _nothing_to_use(log: Log, input_name: str) -> str:
         return f"no pose of the log can be used: {lost}" if lost else "the log has no poses"
     if not _input_names(log):
         return "the log has no commands and no wheel speeds"
+    if input_name in _input_names(log):
+        return f"no run of the log has both {input_name}s and poses"
     return f"the log has no {input_name} input" if input_name == "wheel" else "the log has no commands"
 
 
@@ -251,7 +253,7 @@ def _advice(log: Log, input_name: str) -> str:
         return log.advice[input_name]
     name = f"name the topic with --{input_name}-topic, or the columns (see `slipwise inspect`)"
     others = [other for other in _input_names(log) if other != input_name]
-    if others:
+    if others and input_name not in _input_names(log):
         return f"use --input {others[0]}, or {name}"
     if not _input_names(log):
         return "record commands or wheel speeds; name their topic with --command-topic or --wheel-topic"

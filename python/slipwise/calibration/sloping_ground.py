@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from slipwise.calibration.settings import AUTO_BASES, Settings
@@ -15,6 +13,7 @@ from slipwise.logs.log import Log
 SLOPE_BASES = ("odd-even-13", "drive-9")
 #: The same where the vehicle drives sideways.
 SIDEWAYS_BASES = ("omni-8",)
+SIDEWAYS_SPEED, SIDEWAYS_PART = 0.05, 0.01  # m/s, and part of the inputs that are faster to a side
 _TINY = 1e-12  # rad; what is smaller everywhere was never measured
 
 
@@ -38,7 +37,7 @@ def has_known_force(log: Log) -> bool:
     Raises:
         LogError: roll and pitch were measured too, of which gravity follows.
     """
-    runs = [run for run in log.runs if run.poses.force_x is not None or run.poses.force_y is not None]
+    runs = [run for run in log.runs if run.forces is not None]
     if runs and has_attitude(log):
         raise LogError(
             "the log has both roll and pitch and a known force, and only one of them can explain a push",
@@ -52,20 +51,32 @@ def for_the_ground_of(log: Log, settings: Settings) -> Settings:
     """Return the settings with which a log is learned.
 
     With terms of gravity where it has an attitude or a known force, of sideways speed where the vehicle is
-    known to drive so.
+    known to drive so, or does.
 
     Only the default list of `auto` is extended; bases that were chosen stay as they are.
     """
-    slopes = SLOPE_BASES if has_known_force(log) or has_attitude(log) else ()
-    return _with(settings, (*slopes, *(SIDEWAYS_BASES if log.sideways else ())))
+    return for_ground(
+        settings, slopes=has_known_force(log) or has_attitude(log), sideways=drives_sideways(log)
+    )
 
 
-def with_gravity(settings: Settings) -> Settings:
-    """Return the settings with terms of gravity in the default list of `auto`; other lists stay."""
-    return _with(settings, SLOPE_BASES)
+def drives_sideways(log: Log) -> bool:
+    """Return whether the vehicle is known to drive sideways, or its inputs say that it does."""
+    inputs = (series for run in log.runs for series in (run.commands, run.wheels) if series is not None)
+    return log.sideways or any(
+        np.mean(np.abs(series.vy) > SIDEWAYS_SPEED) > SIDEWAYS_PART for series in inputs
+    )
 
 
-def _with(settings: Settings, more: Sequence[str]) -> Settings:
+def for_ground(settings: Settings, *, slopes: bool, sideways: bool) -> Settings:
+    """Return the settings with terms of gravity and of sideways speed in the default list of `auto`.
+
+    Args:
+        settings: whose other lists stay.
+        slopes: roll and pitch, or a known force, are measured.
+        sideways: the vehicle drives sideways too.
+    """
+    more = (*(SLOPE_BASES if slopes else ()), *(SIDEWAYS_BASES if sideways else ()))
     if settings.basis != "auto" or tuple(settings.auto.bases) != AUTO_BASES or not more:
         return settings
     bases = [*AUTO_BASES, *more]

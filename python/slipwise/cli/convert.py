@@ -75,11 +75,11 @@ def convert(
     with progress_bar("reading") as update:
         log = request.without_names(open_log(*logs, options=log_options))
         update("writing", 0.2)
-        save_log(log, output)
+        left_out = log.left_out + save_log(log, output)
         request.write_beside(output, update)
-    out.document(head("convert") | {"exit_code": 0, "files": files} | log_part(log, log.left_out))
+    out.document(head("convert") | {"exit_code": 0, "files": files} | log_part(log, left_out))
     show_notes(out, log.notes)
-    show_left_out(out, log.left_out)
+    show_left_out(out, left_out)
     show_files(out, files)
     return 0
 

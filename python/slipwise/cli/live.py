@@ -88,7 +88,6 @@ def live(
     """  # noqa: D301
     from slipwise.cli.live_parts import (
         Source,
-        for_the_ground,
         live_settings,
         model_of_replay,
         open_robot,
@@ -116,13 +115,10 @@ def live(
     with stopped_by_signals() as stopping:
         source = Source(replay, demo, rate, results)
         robot = open_robot(chosen, log_options, source, say=shown.say)
-        if robot.positions:
-            chosen = live_settings(chosen, {"positions": True})
-        if robot.gyro_alone:
-            chosen = live_settings(chosen, {"gyro_alone": True})
-        if robot.sources:
-            chosen = live_settings(chosen, {"sources": list(robot.sources)})
-        chosen = for_the_ground(chosen, robot.log)
+        if log_options.car is not None:  # commands are throttle and steering
+            chosen = live_settings(chosen, {"vehicle": log_options.vehicle})
+        if robot.coming is not None:
+            chosen = live_settings(chosen, robot.coming.settings())
         watchers = watchers_for(shown, chosen.live)
         timeout = None if robot.log is not None else log_options.command_timeout  # a log has it already
         built = build_node(

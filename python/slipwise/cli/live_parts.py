@@ -7,7 +7,7 @@ import contextlib
 import os
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from slipwise.calibration import Settings
     from slipwise.calibration.live_table import LiveTable
     from slipwise.live.build import Built
+    from slipwise.live.coming import Coming
     from slipwise.live.transport import Transport
     from slipwise.live.watch.watcher import Watcher
     from slipwise.logs import Log, LogOptions
@@ -31,9 +32,7 @@ class Robot:
     input_name: str
     run: str | None  # name of the run that begins; None: the transport says
     log: Log | None = None  # that is replayed
-    positions: bool = False  # poses come without a heading
-    sources: tuple[str, ...] = ()  # of poses, where they are distinguished
-    gyro_alone: bool = False  # no poses come, and turns of a gyro are learned from
+    coming: Coming | None = None  # what is known to come; None: what the settings say
 
 
 @dataclass(frozen=True)
@@ -104,18 +103,6 @@ def with_memory(settings: Settings) -> Settings:
     return settings_of(before).model_copy(update={"live": table})
 
 
-def for_the_ground(settings: Settings, log: Log | None) -> Settings:
-    """Return the settings with terms of gravity where a log with an attitude is replayed.
-
-    A memory that is continued keeps its terms, and gets no others.
-    """
-    from slipwise.calibration.sloping_ground import for_the_ground_of
-    from slipwise.live.model_file import surfaces_before
-
-    continued = surfaces_before(settings.live) is not None
-    return settings if log is None or continued else for_the_ground_of(log, settings)
-
-
 def open_robot(
     settings: Settings,
     options: LogOptions,
@@ -135,36 +122,45 @@ def open_robot(
         return Robot(load(ROBOTS, "demo")(rate=source.rate), "command", "the slalom")
     if source.replay is not None:
         return _replayed(table, options, source.replay, source.rate)
-    if table.transport == "stdin":
-        from slipwise.live.pipe import Pipe
-
-        return Robot(
-            Pipe(sys.stdin.buffer, _results(source.results)), table.input or "wheel", "standard input"
-        )
-    if table.transport == "udp":
-        from slipwise.live.udp import DEFAULT_ADDRESS, Udp
-
-        listening = Udp(table.address or DEFAULT_ADDRESS)
-        say(f"listening on UDP port {listening.port}")
-        return Robot(listening, table.input or "wheel", "UDP")
+    if table.transport in ("stdin", "udp"):
+        return _of_lines(table, options, source, say)
     return _ros(table, options, say)
 
 
 def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) -> Robot:
     from slipwise.calibration.prepared_run import choose_input
+    from slipwise.live.coming import coming_of
     from slipwise.live.replay import Replay
     from slipwise.logs import open_log
-    from slipwise.logs.gyro import gyro_alone
-    from slipwise.logs.log import has_course
 
     log = open_log(replay, options=options)
     input_name = table.input or choose_input(log)
     replayed = Replay(log, input_name, rate=rate, label=table.surface)
-    alone = gyro_alone(log.runs)
-    return Robot(replayed, input_name, None, log, has_course(log.runs), replayed.sources, alone)
+    return Robot(replayed, input_name, None, log, coming_of(log))
+
+
+def _of_lines(table: LiveTable, options: LogOptions, source: Source, say: Callable[[str], None]) -> Robot:
+    from slipwise.live.pipe import Pipe
+    from slipwise.live.udp import DEFAULT_ADDRESS, Udp
+
+    if table.transport == "stdin":
+        lines: Pipe | Udp = Pipe(sys.stdin.buffer, _results(source.results), options)
+        name = "standard input"
+    else:
+        lines = Udp(table.address or DEFAULT_ADDRESS, options)
+        name = "UDP"
+        say(f"listening on UDP port {lines.port}")
+    say(f"waiting for the first lines of {name}")
+    coming = lines.look()
+    input_name = table.input or coming.input_name
+    say(f"learning from {input_name}s{coming.words()}")
+    return Robot(
+        lines, input_name, name, coming=replace(coming, sideways=coming.sideways or options.sideways)
+    )
 
 
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
+    from slipwise.live.coming import Coming
     from slipwise.live.ros_roles import (
         find_roles,
         only_positions,
@@ -199,9 +195,12 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         transport,
         input_name,
         "live",
-        positions=positions,
-        sources=source_topics(roles),
-        gyro_alone=roles.pose is None,
+        coming=Coming(
+            positions=positions,
+            gyro_alone=roles.pose is None,
+            sources=source_topics(roles),
+            sideways=options.sideways,
+        ),
     )
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
@@ -48,9 +49,16 @@ def with_new_names(arguments: Sequence[str]) -> list[str]:
     """Return the arguments with options under their present names, and note each older one on stderr."""
     command, *given = arguments
     renamed = RENAMED.get(command, {})
-    result, rest = [command], iter(given)
+    result: list[str] = [command]
+    rest: Iterator[str] = iter(given)
     for argument in rest:
         name, equals, value = argument.partition("=")
+        if name == "--vehicle" and name in renamed:
+            named = value if equals else next(rest, "")
+            if _is_vehicle(named):  # it was the robot's name, too
+                result += [name, named]
+                continue
+            rest, equals = itertools.chain([named] if named else [], rest), ""
         if renamed.get(name) == "":
             print(f"note: {command} {name} is gone: no PNG is written any more", file=sys.stderr)
         elif name in renamed:
@@ -62,6 +70,13 @@ def with_new_names(arguments: Sequence[str]) -> list[str]:
         else:
             result.append(argument)
     return result
+
+
+def _is_vehicle(value: str) -> bool:
+    """Whether it is what a robot drives on, and not its name."""
+    from slipwise.logs.vehicle_description import vehicle_names
+
+    return value.endswith((".yaml", ".yml")) or value in vehicle_names()
 
 
 def _translated(new: str, value: str | None, rest: Iterator[str]) -> list[str]:

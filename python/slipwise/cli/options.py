@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from slipwise.cli.help_pages import show_options
-from slipwise.cli.older_names import RENAMED
 from slipwise.log_fields import LOG_FIELDS, About, Kind
 
 if TYPE_CHECKING:
@@ -110,9 +109,7 @@ def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
         options = _log_options(chosen, given.get("settings"), given.get("changes"))
         return command(log_options=options, **given)
 
-    older = RENAMED.get(command.__name__, {})  # read as something else for one release
-    shown = [about.name for about in LOG_FIELDS if about.option not in older]
-    added = [*map(_parameter, LOG_FIELDS), _help_log(shown)]
+    added = [*map(_parameter, LOG_FIELDS), _help_log(names)]
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in (*own, *added)]
     wrapper.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
     wrapper.__annotations__ = {p.name: p.annotation for p in parameters}

@@ -16,8 +16,8 @@ from slipwise.files import read_whole, sha256_of
 from slipwise.inspection.data_card import NOT_STATED, DataCard, card_path, read_card
 from slipwise.logs import Log, LogOptions, open_log
 from slipwise.logs.left_out import Tally
-from slipwise.logs.shared_columns import BY_NAME, COLUMNS, table_schema
 from slipwise.logs.table import Table, read_parquet
+from slipwise.logs.vocabulary import BY_NAME, SHARED, table_schema
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -79,7 +79,7 @@ def _columns(arrow: pa.Table, path: Path) -> Iterator[Departure]:
     for pair in _TWISTS:
         if sum(name in names for name in pair) == 1:
             yield Departure("column-missing", f"one of {' and '.join(pair)} alone", path.name)
-    for column in COLUMNS:
+    for column in SHARED:
         if column.name in names and str(arrow.schema.field(column.name).type) != _TYPES[column.type]:
             kind = arrow.schema.field(column.name).type
             yield Departure("column-type", f"{column.name} is {kind}, not {_TYPES[column.type]}", path.name)
@@ -114,7 +114,7 @@ def _rows(table: Table) -> Iterator[Departure]:
     there = {
         name: np.isfinite(table.numbers(name, tally))
         for name in table.names
-        if name in BY_NAME and (BY_NAME[name].type == "number")
+        if name in BY_NAME and BY_NAME[name].shared and BY_NAME[name].type == "number"
     }
     whole = there["x"] & there["y"] & there["yaw"]
     yield from _first(table, (fresh == 1.0) & ~whole, "pose-part", "a measured pose lacks x, y or yaw")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from slipwise.calibration import Settings
 from slipwise.calibration.motion_learner import MotionLearner
-from slipwise.calibration.sloping_ground import with_gravity
+from slipwise.calibration.sloping_ground import for_ground
 from slipwise.errors import SettingsError
 from slipwise.live.applied import AppliedModel
 from slipwise.live.cache import Cache, CacheKey
@@ -65,8 +65,8 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     """
     table, said = settings.live, Said()
     before = surfaces_before(table)
-    if table.attitude and before is None:  # a memory that is continued keeps its terms
-        settings = with_gravity(settings)
+    if before is None:  # a memory that is continued keeps its terms
+        settings = for_ground(settings, slopes=table.attitude, sideways=table.sideways)
     start = _start_model(table.model, input_name)
     cache, learner, valid = None, None, None
     if table.cache is not None:

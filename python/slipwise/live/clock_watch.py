@@ -6,10 +6,8 @@ from __future__ import annotations
 import math
 from enum import Enum
 
-from slipwise.live.samples import Command, Gyro, Override, Pose, Wheels
+from slipwise.live.samples import Stamped
 from slipwise.logs.clock_steps import AGREE, BACK, ENOUGH
-
-Stamped = Command | Wheels | Pose | Gyro | Override
 
 AHEAD = 60.0  # s ahead of it, after which one stamp alone is held back
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import math
 
-from slipwise.live.clock_watch import Stamped
-from slipwise.live.samples import Command
+from slipwise.live.samples import Command, Stamped
 from slipwise.logs.command_timeout import end_stamps
 
 WAIT = 0.1  # s; a command may come so much later than a sample of another stream with its stamp

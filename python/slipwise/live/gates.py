@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from slipwise.live.samples import Command, Gyro, Override, Pose, Twist, Wheels
+from slipwise.live.samples import Command, Override, Pose, Stamped, Twist, Wheels
 from slipwise.live.source_watch import SourceWatch
 from slipwise.models import Model
 
@@ -56,7 +56,7 @@ class Gates:
         self._wheels = SourceWatch(FAR_TWIST, relative=0.1)
         self._poses = SourceWatch(FAR_POSE)
 
-    def take(self, sample: Command | Wheels | Pose | Gyro | Override) -> None:
+    def take(self, sample: Stamped) -> None:
         """Take a sample in the order in which it came; one without a stamp says nothing."""
         if not math.isfinite(sample.t):
             return
@@ -65,7 +65,7 @@ class Gates:
         elif isinstance(sample, Pose):
             if not sample.source and self._poses.take(sample.t, (sample.x, sample.y)):
                 self._close("two sources speak on the pose topic", sample.t, 0.0)
-        elif not isinstance(sample, Gyro):
+        elif isinstance(sample, Command | Wheels):
             self._take_twist(sample)
 
     def why(self, t: float) -> str:

@@ -4,16 +4,27 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
-from slipwise.live.clock_watch import Clock, ClockWatch, Stamped
+from slipwise.live.clock_watch import Clock, ClockWatch
 from slipwise.live.command_ends import CommandEnds
 from slipwise.live.command_stops import SAID_EVERY, LiveCommandStops
 from slipwise.live.gates import Gates
 from slipwise.live.move_adviser import Turning
 from slipwise.live.said import Said
-from slipwise.live.samples import Command, DriveStart, Gyro, Pose, SurfaceCue, Twist, Wheels
+from slipwise.live.samples import (
+    Command,
+    DriveStart,
+    Gyro,
+    KnownForce,
+    Pose,
+    Stamped,
+    SurfaceCue,
+    Twist,
+    Wheels,
+)
 from slipwise.live.surface_watch import SurfaceWatch
 from slipwise.logs.clock_steps import set_back_words
 from slipwise.logs.contradiction import Contradiction
@@ -47,12 +58,17 @@ class Intake:
         self.newest_input: Twist | None = None
         self.newest_pose: Pose | None = None
         self.why_not = ""  # nothing is learned now
+        self._source: str | None = None  # of poses, where sources are not told apart
         self._mounting = ""  # of the sensor of roll and pitch, as it was said
 
     @property
     def newest(self) -> float:
         """Stamp of the newest sample that was taken [s]; minus infinity before the first."""
         return self._clock.newest
+
+    def teaches(self, sample: Stamped) -> bool:
+        """Whether a model is learned from samples of its kind, so that it is time to look at it."""
+        return isinstance(sample, Pose) or (isinstance(sample, Gyro) and self._learner.gyro_alone)
 
     def start_run(self, name: str) -> None:
         """Begin a recording: nothing is joined across runs."""
@@ -118,12 +134,35 @@ class Intake:
             learner.push_command(sample.t, sample.v, sample.omega, sample.vy)
         elif isinstance(sample, Wheels):
             learner.push_wheels(sample.t, sample.v, sample.omega, sample.vy)
+        elif isinstance(sample, KnownForce):
+            learner.push_force(sample.t, sample.x, sample.y)
         elif isinstance(sample, Gyro):
-            learner.push_gyro(sample.t, sample.rate)
+            self._push_gyro(sample)
         elif isinstance(sample, Pose):
-            self._push_pose(sample)
+            self._push_pose(sample if learner.tells_sources else self._of_one_source(sample))
+
+    def _push_gyro(self, sample: Gyro) -> None:
+        learner = self._learner
+        if learner.gyro_alone:
+            self._follow_gates(sample.t)
+        elif not learner.positions:
+            self._said.count("turns of a gyro, which poses with a heading tell themselves")
+            return
+        if learner.gyro_alone and self.why_not:
+            self._said.count(f"turns not learned from: {self.why_not}")
+        else:
+            learner.push_gyro(sample.t, sample.rate)
+
+    def _of_one_source(self, pose: Pose) -> Pose:
+        """The poses of the source that speaks first, where sources are not told apart."""
+        if self._source is None:
+            self._source = pose.source
+        return replace(pose, source="") if pose.source == self._source else pose
 
     def _push_pose(self, pose: Pose) -> None:
+        if self._learner.gyro_alone:
+            self._said.count("poses, where turns of a gyro alone are learned from")
+            return
         if not self._learner.knows_source(pose.source):
             self._said.count(f"poses of '{pose.source}', which is none of the sources of [live]")
             return

@@ -6,7 +6,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from slipwise.errors import LogError
 from slipwise.live.outputs import (
@@ -21,26 +21,37 @@ from slipwise.live.outputs import (
     next_moves_content,
     surface_content,
 )
-from slipwise.live.samples import Command, Override, Pose, Request, RunStart, Sample, SurfaceCue, Wheels
-from slipwise.logs.fixes import FIXES, fix_number
+from slipwise.live.samples import Override, Request, RunStart, Sample, SurfaceCue, Unusable
+from slipwise.logs.options import LogOptions
+from slipwise.logs.row_reader import RowReader, number_of
+from slipwise.logs.table import EMPTY_CELLS
 
 MOST_BYTES = 10_000  # of a line
+_AS_IT_IS = LogOptions()
 
-_COMMAND = ("cmd_v", "cmd_omega")
-_WHEELS = ("odo_v", "odo_omega")
-_POSE = ("x", "y", "yaw")
+_FURTHER = ("override",)  # what a line may say beside a row of a log
 
 
 class LineReader:
-    """Turns lines into samples. Columns are those of a tidy log; an empty cell, or none, is no measurement.
+    """Turns lines into samples: a line is a row of a tidy log, and read as one.
 
-    One line may hold a command, wheel speeds and a pose of one stamp. A JSON line may ask, too:
-    {"apply": true} or {"predict": {"horizon": 2, "commands": [[t, v, omega], ...]}}; and
-    it may say what the ground is: {"terrain": "sand"}, or {"terrain_changed": true}.
+    Columns are those of a tidy log; an empty cell, or none, is no measurement. A JSON line may ask, too:
+    {"apply": true} or {"predict": {"horizon": 2, "commands": [[t, v, omega], ...]}}; and it may say what the
+    ground is: {"terrain": "sand"}, or {"terrain_changed": true}.
+
+    Args:
+        options: how rows are read.
+
+    Raises:
+        SettingsError: the options name columns that there are not, or ask for what takes a whole log.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, options: LogOptions = _AS_IT_IS) -> None:
+        self._rows = RowReader(options, _FURTHER)
         self._header: list[str] | None = None
+        self._run: str | None = None
+        self.columns: set[str] = set()  # that lines had so far
+        self.notes: list[str] = []  # what was worked out, since somebody looked
 
     def read(self, line: str) -> list[Sample]:
         """Return the samples of a line.
@@ -54,20 +65,64 @@ class LineReader:
         if len(text) > MOST_BYTES:
             raise LogError("a line is too long", advice=f"write {MOST_BYTES} bytes at most")
         if text.startswith("{"):
-            return _of_json(text)
+            return self._of_json(text)
         cells = _cells(text)
-        if self._header is None or "t" in cells:
-            self._header = [cell.strip() for cell in cells]
-            if "t" not in self._header:
-                self._header = None
-                raise LogError(
-                    "lines come before a header", advice="start with t,odo_v,odo_omega,x,y,yaw or the like"
-                )
+        names = self._rows.renamed([cell.strip() for cell in cells])
+        if "t" in names and not _is_number(cells[names.index("t")]):
+            self._header = names
+            self.columns.update(names)
             return []
+        if self._header is None:
+            raise LogError(
+                "lines come before a header", advice="start with t,odo_v,odo_omega,x,y,yaw or the like"
+            )
         if len(cells) != len(self._header):
             raise LogError(f"{len(cells)} cells where the header has {len(self._header)}")
         filled = zip(self._header, cells, strict=True)
-        return samples_of_row({name: cell for name, cell in filled if cell.strip() != ""})
+        return self._of_row(
+            {name: cell for name, cell in filled if cell.strip() not in EMPTY_CELLS}, self._header
+        )
+
+    def _of_row(self, cells: Mapping[str, object], names: Sequence[str]) -> list[Sample]:
+        """Return the samples of one stamp: labels first, then measurements in the order of their kinds."""
+        found: list[Sample] = []
+        run = str(cells["run"]).strip() if "run" in cells else self._run
+        if run != self._run:
+            self._run = run
+            self._rows.restart()
+            found.append(RunStart(str(run)))
+        row = self._rows.read(cells, names)
+        self.notes += row.notes
+        found += [Unusable(reason, text, kind=text) for reason, text in row.left_out]
+        if row.label:
+            found.append(SurfaceCue(row.label))
+        if "override" in cells:
+            found.append(Override(number_of(cells, "t"), bool(number_of(cells, "override"))))
+        return [*found, *row.measurements]
+
+    def _of_json(self, text: str) -> list[Sample]:
+        try:
+            content = json.loads(text)
+        except (ValueError, RecursionError) as problem:
+            raise LogError(f"not a JSON object: {problem}") from problem
+        if not isinstance(content, dict):
+            raise LogError("not a JSON object")
+        if "predict" in content:
+            return [Request("predict", json.dumps(content["predict"]))]
+        if content.get("terrain_changed") is True:
+            return [SurfaceCue()]
+        if "t" not in content and content.get("terrain"):
+            return [SurfaceCue(str(content["terrain"]))]
+        if content.get("apply") is True:
+            return [Request("apply")]
+        if "run" in content and "t" not in content:
+            self._run = str(content["run"])
+            self._rows.restart()
+            return [RunStart(self._run)]
+        filled = {name: value for name, value in content.items() if value is not None}
+        names = self._rows.renamed(list(filled))
+        self.columns.update(names)
+        return self._of_row(dict(zip(names, filled.values(), strict=True)), names)
 
 
 def _cells(text: str) -> list[str]:
@@ -77,82 +132,12 @@ def _cells(text: str) -> list[str]:
         raise LogError(f"not a line of CSV: {problem}") from problem
 
 
-def samples_of_row(row: Mapping[str, object]) -> list[Sample]:
-    """Return the samples of one stamp, commands first, poses last.
-
-    Raises:
-        LogError: a cell is no number, or there is no stamp.
-    """
-    if "t" not in row:
-        raise LogError("there is no t, the stamp in seconds")
-    t = _number(row, "t")
-    found: list[Sample] = _labels(row)
-    if "override" in row:
-        found.append(Override(t, bool(_number(row, "override"))))
-    if all(name in row for name in _COMMAND):
-        v, omega = _number(row, "cmd_v"), _number(row, "cmd_omega")
-        found.append(Command(t, v, omega, _number(row, "cmd_vy", 0.0)))
-    if all(name in row for name in _WHEELS):
-        v, omega = _number(row, "odo_v"), _number(row, "odo_omega")
-        found.append(Wheels(t, v, omega, _number(row, "odo_vy", 0.0)))
-    if all(name in row for name in _POSE):
-        found.append(_pose_of(t, row))
-    return found
-
-
-def _labels(row: Mapping[str, object]) -> list[Sample]:
-    """What the line says of the ground, before what it measures: as a log's column `terrain` is read."""
-    label = str(row.get("terrain", "")).strip()
-    return [SurfaceCue(label)] if label else []
-
-
-def _pose_of(t: float, row: Mapping[str, object]) -> Pose:
-    return Pose(
-        t,
-        _number(row, "x"),
-        _number(row, "y"),
-        _number(row, "yaw"),
-        std_xy=_known(row, "std_xy"),
-        std_yaw=_known(row, "std_yaw"),
-        frame=str(row.get("frame", "")),
-        roll=_known(row, "roll"),
-        pitch=_known(row, "pitch"),
-        source=str(row.get("source", "")),
-        fix=FIXES[fix_number(str(row.get("fix", "")))],
-    )
-
-
-def _of_json(text: str) -> list[Sample]:
+def _is_number(cell: str) -> bool:
     try:
-        content = json.loads(text)
-    except (ValueError, RecursionError) as problem:
-        raise LogError(f"not a JSON object: {problem}") from problem
-    if not isinstance(content, dict):
-        raise LogError("not a JSON object")
-    if "predict" in content:
-        return [Request("predict", json.dumps(content["predict"]))]
-    if content.get("terrain_changed") is True:
-        return [SurfaceCue()]
-    if "terrain" in content and "t" not in content:
-        return _labels(content)
-    if content.get("apply") is True:
-        return [Request("apply")]
-    if "run" in content and "t" not in content:
-        return [RunStart(str(content["run"]))]
-    return samples_of_row({name: value for name, value in content.items() if value is not None})
-
-
-def _number(row: Mapping[str, object], name: str, default: float = math.nan) -> float:
-    if name not in row:
-        return default
-    try:
-        return float(row[name])  # type: ignore[arg-type]
-    except (TypeError, ValueError, OverflowError) as problem:
-        raise LogError(f"{name} is {str(row[name])[:40]!r}, not a number") from problem
-
-
-def _known(row: Mapping[str, object], name: str) -> float | None:
-    return _number(row, name) if name in row else None
+        float(cell)
+    except ValueError:
+        return False
+    return True
 
 
 def line_of(output: Output) -> str:

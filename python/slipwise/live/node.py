@@ -169,6 +169,7 @@ class LiveNode:
         t = parts.intake.newest
         if isinstance(sample, Pose):
             self._driven.take(sample.x, sample.y, sample.yaw)
+        if parts.intake.teaches(sample):
             if parts.learning.take(parts.intake.events()):
                 self._publish_surface(t)
             self._judge(t)

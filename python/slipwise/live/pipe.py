@@ -3,16 +3,21 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
 from collections.abc import Iterator
 from typing import IO
 
 from slipwise.errors import LogError
+from slipwise.live.coming import Coming, ComingSoon
 from slipwise.live.lines import MOST_BYTES, LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.result_lines import ResultLines, Writable
 from slipwise.live.samples import Sample, Unusable
 from slipwise.live.transport import OnSample
+from slipwise.logs.options import LogOptions
+
+_AS_IT_IS = LogOptions()
 
 
 class Pipe:
@@ -21,13 +26,31 @@ class Pipe:
     Args:
         lines: the binary stream to read.
         results: where results go as JSON lines, unbuffered; None: nowhere.
+        options: how lines are read.
+
+    Raises:
+        SettingsError: the options cannot be used live.
     """
 
-    def __init__(self, lines: IO[bytes], results: Writable | None = None) -> None:
-        self._lines, self._results = lines, None if results is None else ResultLines(results)
-        self._reader = LineReader()
+    def __init__(
+        self, lines: IO[bytes], results: Writable | None = None, options: LogOptions = _AS_IT_IS
+    ) -> None:
+        self._lines, self._results = bounded_lines(lines), None if results is None else ResultLines(results)
+        self._reader = LineReader(options)
+        self._samples = self._read_all()
+        self._looked_at: list[Sample] = []
         self._done, self._stopped = threading.Event(), threading.Event()
         self._failure: Exception | None = None
+
+    def look(self) -> Coming:
+        """Wait for the first samples, and return what will come; `subscribe` delivers them all the same."""
+        soon = ComingSoon()
+        for sample in self._samples:
+            self._looked_at.append(sample)
+            soon.take([sample])
+            if soon.enough:
+                break
+        return soon.found(self._reader.columns)
 
     def subscribe(self, on_sample: OnSample) -> None:
         """Begin to read."""
@@ -39,8 +62,9 @@ class Pipe:
             self._results.write(line_of(output))
 
     def notices(self) -> list[str]:
-        """Return what was wrong with results."""
-        return [] if self._results is None else self._results.notices()
+        """Return what was worked out of lines, and what was wrong with results."""
+        notes, self._reader.notes = self._reader.notes, []
+        return notes if self._results is None else notes + self._results.notices()
 
     @property
     def finished(self) -> bool:
@@ -71,14 +95,17 @@ class Pipe:
 
     def _read(self, on_sample: OnSample) -> None:
         try:
-            for number, line in enumerate(bounded_lines(self._lines), start=1):
+            for sample in itertools.chain(self._looked_at, self._samples):
                 if self._stopped.is_set():
                     return
-                for sample in samples_in(self._reader, line, f"line {number}"):
-                    on_sample(sample)
+                on_sample(sample)
         except Exception as problem:  # the node's thread raises it
             self._failure = None if self._stopped.is_set() else problem
         self._done.set()
+
+    def _read_all(self) -> Iterator[Sample]:
+        for number, line in enumerate(self._lines, start=1):
+            yield from samples_in(self._reader, line, f"line {number}")
 
 
 def bounded_lines(stream: IO[bytes]) -> Iterator[bytes]:
@@ -93,12 +120,19 @@ def bounded_lines(stream: IO[bytes]) -> Iterator[bytes]:
 def samples_in(reader: LineReader, line: bytes, place: str) -> list[Sample]:
     """Return the samples of a line; where it cannot be used, why, with its place."""
     try:
-        return reader.read(decoded(line))
+        return [placed(sample, place) for sample in reader.read(decoded(line))]
     except LogError as problem:
         why = str(problem)
     except Exception as problem:  # no line ends the thread that reads
         why = f"it cannot be read: {type(problem).__name__}"
-    return [Unusable("a line that cannot be used", f"left out, {place}: {why}", kind=why)]
+    return [placed(Unusable("a line that cannot be used", why, kind=why), place)]
+
+
+def placed(sample: Sample, place: str) -> Sample:
+    """Return a sample; of what cannot be used, where it is too."""
+    if not isinstance(sample, Unusable):
+        return sample
+    return Unusable(sample.reason, f"left out, {place}: {sample.text}", kind=sample.kind)
 
 
 def decoded(line: bytes) -> str:

@@ -10,22 +10,24 @@ from collections.abc import Iterator, Sequence
 
 from slipwise.calibration.prepared_run import PreparedRun, has_wheels, prepare_run
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
-from slipwise.errors import LogError, SettingsError
+from slipwise.errors import SettingsError
 from slipwise.live.feed import Feed
 from slipwise.live.samples import (
     Command,
     DriveStart,
     Gyro,
+    KnownForce,
     Pose,
     RunStart,
     Sample,
+    Stamped,
     SurfaceCue,
     Wheels,
 )
 from slipwise.logs import Log
 from slipwise.logs.fixes import FIXES
 from slipwise.logs.gyro import gyro_rows
-from slipwise.segments import recording_rows, source_names, sourced_rows
+from slipwise.segments import force_rows, recording_rows, source_names, sourced_rows
 
 AS_FAST_AS_IT_GOES = 0.0
 
@@ -40,7 +42,7 @@ class Replay(Feed):
         label: name of the surface; without it those of the column `terrain`.
 
     Raises:
-        LogError: no run has such inputs and poses, or one has known forces.
+        LogError: no run has such inputs and poses.
         SettingsError: the rate is negative.
     """
 
@@ -48,16 +50,9 @@ class Replay(Feed):
         if not rate >= AS_FAST_AS_IT_GOES:
             raise SettingsError(f"the rate is {rate:g}", where="--rate", advice="such as 10, or 0: no waits")
         drive = prepare_run(log, input_name)
-        for run in drive:
-            _refuse_forces(run)
         super().__init__(self._paced(drive, rate, label))
         self._wheels, self._clocks_compared = has_wheels(drive), log.clocks_compared
         self._sources = source_names(run.run for run in drive)
-
-    @property
-    def sources(self) -> tuple[str, ...]:
-        """Names of the sources of poses, where they are distinguished; the first's first."""
-        return self._sources
 
     @property
     def wheels(self) -> bool:
@@ -88,8 +83,8 @@ class Replay(Feed):
 
 
 def with_labels(
-    samples: Iterator[Command | Wheels | Pose | Gyro], cues: Sequence[tuple[float, str]]
-) -> Iterator[Command | Wheels | Pose | Gyro | SurfaceCue]:
+    samples: Iterator[Stamped], cues: Sequence[tuple[float, str]]
+) -> Iterator[Stamped | SurfaceCue]:
     """Yield the samples, with each label before the first one that is not older."""
     waiting = deque(cues)
     for sample in samples:
@@ -98,39 +93,27 @@ def with_labels(
         yield sample
 
 
-def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Command | Wheels | Pose | Gyro]:
-    """Yield the samples of a run in the order of their stamps: commands, wheels, poses, the gyro.
+def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Stamped]:
+    """Yield the samples of a run in the order of their stamps: commands, wheels, forces, poses, the gyro.
 
     Args:
         run: what was measured.
         sources: names of the sources of poses, where they are distinguished.
-
-    Raises:
-        LogError: the log has known forces.
     """
     *others, measured = recording_rows(run.run)
     commands, wheels, attitudes = (rows.tolist() for rows in others)
-    _refuse_forces(run)
     poses = (sourced_rows(run.run, measured, sources) if sources else measured).tolist()
     tilt = {t: (roll, pitch) for t, roll, pitch in attitudes}
     streams: tuple[list[tuple[float, int, int, Sample]], ...] = (
         [(t, 0, i, Command(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(commands)],
         [(t, 1, i, Wheels(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(wheels)],
-        [(row[0], 2, i, _pose(row, tilt.get(row[0]), sources)) for i, row in enumerate(poses)],
-        [(t, 3, i, Gyro(t, rate)) for i, (t, rate) in enumerate(gyro_rows(run.run).tolist())],
+        [(t, 2, i, KnownForce(t, x, y)) for i, (t, x, y) in enumerate(force_rows(run.run).tolist())],
+        [(row[0], 3, i, _pose(row, tilt.get(row[0]), sources)) for i, row in enumerate(poses)],
+        [(t, 4, i, Gyro(t, rate)) for i, (t, rate) in enumerate(gyro_rows(run.run).tolist())],
     )
     for _, _, _, sample in heapq.merge(*streams):
-        assert isinstance(sample, Command | Wheels | Pose | Gyro)
+        assert isinstance(sample, Stamped)
         yield sample
-
-
-def _refuse_forces(run: PreparedRun) -> None:
-    if run.run.poses.force_x is not None or run.run.poses.force_y is not None:
-        raise LogError(
-            "known forces cannot be replayed live",
-            where=run.run.name,
-            advice="leave out force_x and force_y, or use slipwise calibrate",
-        )
 
 
 def _pose(row: list[float], tilt: tuple[float, float] | None, sources: Sequence[str]) -> Pose:

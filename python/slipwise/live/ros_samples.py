@@ -12,6 +12,7 @@ import numpy as np
 from slipwise.errors import SettingsError
 from slipwise.live.one_rotation import deviation, rotation_of
 from slipwise.live.samples import Command, Gyro, Pose, Wheels
+from slipwise.logs.corrections import late_by
 from slipwise.logs.fixes import fix_of_status
 from slipwise.logs.joints import SideMotion
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
@@ -196,20 +197,6 @@ def to_pose(kind: str, options: LogOptions, *, headed: bool = True) -> ToPose:
         return Pose(t + late, x, y, yaw + offset, std_xy, std_yaw, message.header.frame_id, *tilt)
 
     return pose
-
-
-def late_by(options: LogOptions) -> float:
-    """Return what is added to the stamps of poses [s].
-
-    Raises:
-        SettingsError: it is to be found, which takes a whole log.
-    """
-    late = options.pose_clock_offset
-    if isinstance(late, str):
-        raise SettingsError(
-            f"--pose-clock-offset {late} is found from a whole log, not live", advice="give the seconds"
-        )
-    return late or 0.0
 
 
 def to_gyro(message: Any, t: float) -> Gyro | None:

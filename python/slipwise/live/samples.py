@@ -1,57 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a robot tells and is asked: one measurement or one request, in SI units, with its stamp."""
+"""What a robot tells and is asked: a measurement (`logs.measurements`), a label, or a request."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Literal
 
-
-@dataclass(frozen=True, slots=True)
-class Twist:
-    """A commanded or a measured twist of the body."""
-
-    t: float  # s, stamp of the message
-    v: float  # m/s, forward
-    omega: float  # rad/s, counter-clockwise
-    vy: float = 0.0  # m/s, to the left
-
-
-class Command(Twist):
-    """A command."""
-
-    __slots__ = ()
-
-
-class Wheels(Twist):
-    """What its wheels measure."""
-
-    __slots__ = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Pose:
-    """Where a sensor measured the robot to be."""
-
-    t: float  # s
-    x: float  # m
-    y: float  # m
-    yaw: float  # rad, counter-clockwise; NaN where the position alone is measured
-    std_xy: float | None = None  # m, where the sensor says it
-    std_yaw: float | None = None  # rad
-    frame: str = ""  # poses of different frames are not compared
-    roll: float | None = None  # rad
-    pitch: float | None = None  # rad; by REP-103 nose down is positive
-    source: str = ""  # that measured it, of several; nothing: the first
-    fix: str = ""  # what a satellite receiver says of it, where fixes are distinguished
-
-
-@dataclass(frozen=True, slots=True)
-class Gyro:
-    """How fast a gyro measured the robot to turn."""
-
-    t: float  # s
-    rate: float  # rad/s, counter-clockwise
+from slipwise.logs.measurements import Command, Gyro, KnownForce, Pose, Twist, Wheels
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,4 +60,22 @@ class Unusable:
     kind: str  # of the sentence
 
 
-Sample = Command | Wheels | Pose | Gyro | Override | Request | SurfaceCue | RunStart | Unusable
+Stamped = Command | Wheels | KnownForce | Pose | Gyro | Override
+Sample = Stamped | Request | SurfaceCue | RunStart | Unusable
+
+__all__ = [
+    "Command",
+    "DriveStart",
+    "Gyro",
+    "KnownForce",
+    "Override",
+    "Pose",
+    "Request",
+    "RunStart",
+    "Sample",
+    "Stamped",
+    "SurfaceCue",
+    "Twist",
+    "Unusable",
+    "Wheels",
+]

@@ -8,13 +8,17 @@ import socket
 import threading
 
 from slipwise.errors import SettingsError
+from slipwise.live.coming import Coming, ComingSoon
 from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.pipe import samples_in
+from slipwise.live.samples import Sample
 from slipwise.live.transport import OnSample
+from slipwise.logs.options import LogOptions
 
 DEFAULT_ADDRESS = "127.0.0.1:7447"
 LARGEST = 60_000  # bytes of a packet
+_AS_IT_IS = LogOptions()
 
 
 def listening_socket(address: str) -> socket.socket:
@@ -41,14 +45,17 @@ class Udp:
 
     Args:
         address: "host:port" to listen on; port 0 takes a free one.
+        options: how lines are read.
 
     Raises:
-        SettingsError: the address cannot be used.
+        SettingsError: the address or the options cannot be used.
     """
 
-    def __init__(self, address: str = DEFAULT_ADDRESS) -> None:
+    def __init__(self, address: str = DEFAULT_ADDRESS, options: LogOptions = _AS_IT_IS) -> None:
+        self._reader = LineReader(options)
         self._socket = listening_socket(address)
-        self._reader = LineReader()
+        self._packets = 0
+        self._looked_at: list[Sample] = []
         self._sender: tuple[str, int] | None = None
         self._stopped = threading.Event()
         self._thread: threading.Thread | None = None
@@ -57,6 +64,15 @@ class Udp:
     def port(self) -> int:
         """The port that is listened on."""
         return int(self._socket.getsockname()[1])
+
+    def look(self) -> Coming:
+        """Wait for the first samples, and return what will come; `subscribe` delivers them all the same."""
+        soon = ComingSoon()
+        while not soon.enough:
+            samples = self._receive()
+            self._looked_at += samples
+            soon.take(samples)
+        return soon.found(self._reader.columns)
 
     def subscribe(self, on_sample: OnSample) -> None:
         """Begin to listen."""
@@ -72,8 +88,9 @@ class Udp:
             self._socket.sendto(line.encode() + b"\n", self._sender)
 
     def notices(self) -> list[str]:
-        """Nothing to say; what is wrong with packets is among the samples."""
-        return []
+        """Return what was worked out of lines; what is wrong with packets is among the samples."""
+        notes, self._reader.notes = self._reader.notes, []
+        return notes
 
     @property
     def finished(self) -> bool:
@@ -98,15 +115,26 @@ class Udp:
         self._socket.close()
 
     def _listen(self, on_sample: OnSample) -> None:
-        number = 0
+        for sample in self._looked_at:
+            on_sample(sample)
         while not self._stopped.is_set():
             try:
-                packet, self._sender = self._socket.recvfrom(LARGEST + 1)
-            except TimeoutError:
-                continue
+                samples = self._receive()
             except OSError:
                 return
-            number += 1
-            for line in packet.splitlines():
-                for sample in samples_in(self._reader, line, f"packet {number}"):
-                    on_sample(sample)
+            for sample in samples:
+                on_sample(sample)
+
+    def _receive(self) -> list[Sample]:
+        """Return the samples of the next packet; none where there is none in a fifth of a second.
+
+        Raises:
+            OSError: nothing can be received any more.
+        """
+        try:
+            packet, self._sender = self._socket.recvfrom(LARGEST + 1)
+        except TimeoutError:
+            return []
+        self._packets += 1
+        place = f"packet {self._packets}"
+        return [sample for line in packet.splitlines() for sample in samples_in(self._reader, line, place)]

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from slipwise.errors import LogError
 from slipwise.logs.log import Floats, Inputs, Log, Poses, Run
-from slipwise.logs.tidy_columns import NUMERIC
-from slipwise.logs.wheel_readings import PREFIXES
+from slipwise.logs.vocabulary import PREFIXES, measured_by
 
 LONGEST_GAP = 3600.0  # s between runs; a longer one would tell the hours of work
 _DIGITS = 12  # hexadecimal, of a hashed name
@@ -55,7 +54,7 @@ def anonymised(log: Log, *, keep: Collection[str] = ()) -> Log:
 
 def _harmless(name: str) -> bool:
     """Whether a column beside the tidy ones holds speeds or angles of the vehicle alone."""
-    return name in NUMERIC or name.startswith((*PREFIXES, "cmd_", "odo_"))
+    return measured_by(name) in ("command", "wheel") or name.startswith((*PREFIXES, "cmd_", "odo_"))
 
 
 def _shifts(spans: Iterable[tuple[float, float]]) -> list[float]:

@@ -44,17 +44,23 @@ def with_car_commands(log: Log, options: LogOptions) -> Log:
     return replace(log, runs=tuple(runs), notes=(*log.notes, note))
 
 
+def beyond_words(throttle: float, steering: float) -> str:
+    """Say which command is larger than it can be; empty where none is."""
+    for name, value in (("throttle", throttle), ("steering", steering)):
+        if abs(value) > _LARGEST:
+            return f"{name} reaches {abs(value):.3g}, and must be in [-1, 1]"
+    return ""
+
+
 def _recording(run: Run, where: str) -> _core.Recording:
     none = np.empty((0, 4))
     given, poses = run.commands, run.poses
     if given is None:
         commands = none
     else:
-        for name, values in (("throttle", given.v), ("steering", given.omega)):
-            if np.abs(values).max() > _LARGEST:
-                what = f"{name} reaches {np.abs(values).max():.3g}"
-                advice = "it must be in [-1, 1]; --command-scale divides it"
-                raise LogError(what, where=where, advice=advice)
+        beyond = beyond_words(float(np.abs(given.v).max()), float(np.abs(given.omega).max()))
+        if beyond:
+            raise LogError(beyond, where=where, advice="--command-scale divides it")
         commands = np.column_stack((given.t, given.v, given.vy, given.omega))
     # The direction of the path looks ahead; where there is no heading, the core takes courses of its own.
     yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from slipwise.logs.log import Inputs, Log, Poses
+from slipwise.errors import SettingsError
+from slipwise.logs.log import Floats, Inputs, Log, Poses
 from slipwise.logs.motion_windows import wrapped
 from slipwise.logs.options import LogOptions
 
@@ -55,11 +56,36 @@ def _scaled(inputs: Inputs | None, factors: tuple[float, float]) -> Inputs | Non
 
 def _turned(poses: Poses, offset: float) -> Poses:
     """Poses of the robot from those of a sensor that is turned on it; roll and pitch are turned with it."""
-    yaw = wrapped(poses.yaw + offset)
-    if poses.roll is None or poses.pitch is None:
-        return replace(poses, yaw=yaw)
-    down_x, down_y = np.sin(poses.pitch), -np.cos(poses.pitch) * np.sin(poses.roll)
+    yaw, roll, pitch = turned((poses.yaw, poses.roll, poses.pitch), offset)
+    return replace(poses, yaw=yaw, roll=roll, pitch=pitch)
+
+
+def turned(
+    angles: tuple[Floats, Floats | None, Floats | None], offset: float
+) -> tuple[Floats, Floats | None, Floats | None]:
+    """Return yaw, roll and pitch [rad] of the robot from those of a sensor that is turned on it."""
+    yaw, roll, pitch = angles
+    if offset == 0.0:
+        return angles
+    yaw = wrapped(yaw + offset)
+    if roll is None or pitch is None:
+        return yaw, roll, pitch
+    down_x, down_y = np.sin(pitch), -np.cos(pitch) * np.sin(roll)
     turned_x = np.cos(offset) * down_x + np.sin(offset) * down_y
     turned_y = np.cos(offset) * down_y - np.sin(offset) * down_x
-    roll = np.arctan2(-turned_y, np.cos(poses.pitch) * np.cos(poses.roll))
-    return replace(poses, yaw=yaw, roll=roll, pitch=np.arcsin(np.clip(turned_x, -1.0, 1.0)))
+    roll = np.arctan2(-turned_y, np.cos(pitch) * np.cos(roll))
+    return yaw, roll, np.arcsin(np.clip(turned_x, -1.0, 1.0))
+
+
+def late_by(options: LogOptions) -> float:
+    """Return what is added to the stamps of poses that come live [s].
+
+    Raises:
+        SettingsError: it is to be found, which takes a whole log.
+    """
+    late = options.pose_clock_offset
+    if isinstance(late, str):
+        raise SettingsError(
+            f"--pose-clock-offset {late} is found from a whole log, not live", advice="give the seconds"
+        )
+    return late or 0.0

@@ -22,7 +22,7 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 ABSURD = 1e30  # no measurement in SI units is larger
-OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw", "fix", "force_x", "force_y")
+OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw", "fix")
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,8 +88,6 @@ class Poses:
     fix: Floats | None = (
         None  # [M] code of what a satellite receiver says (`fixes`), NaN where it says nothing
     )
-    force_x: Floats | None = None  # [M] m/s^2, a known force over the robot's mass along its x axis
-    force_y: Floats | None = None  # [M] m/s^2, the same to its left
     course: bool = False  # only positions were measured: the yaw is the direction of the path
     # As measured, where outliers were rejected and frames split at jumps; poses made from these have none.
     measured: Poses | None = field(default=None, init=False)
@@ -109,6 +107,25 @@ class Poses:
 
 
 @dataclass(frozen=True, eq=False)
+class Forces:
+    """A known force over the robot's mass; it holds until the next one.
+
+    Raises:
+        LogError: lengths differ, a value is not finite, or the stamps do not increase.
+    """
+
+    t: Floats  # [N] s, strictly increasing
+    x: Floats  # [N] m/s^2, along the robot's x axis
+    y: Floats  # [N] m/s^2, to its left
+
+    def __post_init__(self) -> None:
+        _check_series(self, required=("t", "x", "y"))
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+
+@dataclass(frozen=True, eq=False)
 class Run:
     """One uninterrupted recording; nothing is ever joined across runs."""
 
@@ -120,6 +137,7 @@ class Run:
     others: Mapping[str, Poses] = field(default_factory=dict)  # of further sources, by name
     source: str = ""  # name of the first source, where there are several
     files: tuple[str, ...] = ()  # that it comes from: paths of sources of the log
+    forces: Forces | None = None  # that are known to push the robot
 
     def __repr__(self) -> str:
         return f"<Run {self.name!r}: {', '.join(self._parts())}>"
@@ -221,7 +239,7 @@ def _duration(t: Floats) -> float:
     return float(t[-1] - t[0]) if len(t) else 0.0
 
 
-def _check_series(series: Inputs | Poses, *, required: tuple[str, ...]) -> None:
+def _check_series(series: Inputs | Poses | Forces, *, required: tuple[str, ...]) -> None:
     """Refuse a series whose columns do not fit together; the only place where this is checked."""
     name = type(series).__name__
     length = len(series.t)

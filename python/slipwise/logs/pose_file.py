@@ -24,7 +24,7 @@ from slipwise.logs.remote import local_file
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
 from slipwise.logs.table import Table, read_csv, read_parquet
-from slipwise.logs.tidy_columns import POSE_COLUMNS
+from slipwise.logs.vocabulary import POSE_COLUMNS
 
 _KNOWN = (
     "give TUM (t x y z qx qy qz qw), KITTI with times.txt, a CSV or Parquet table with t, x, y, yaw, GPX, "

@@ -6,21 +6,25 @@ from __future__ import annotations
 from pathlib import Path
 
 from slipwise.errors import LogError, OutputError
-from slipwise.logs.log import Log
+from slipwise.logs.gyro import gyro_alone
+from slipwise.logs.log import LeftOut, Log
 
 
-def save_log(log: Log, path: str | Path) -> None:
+def save_log(log: Log, path: str | Path) -> tuple[LeftOut, ...]:
     """Write the log to a .csv, .csv.gz, .parquet or .mcap file, whole or not at all.
 
-    The tables read back equal; an MCAP file carries commands, wheels and poses, to the nanosecond, but no
-    other columns.
+    The tables read back equal; an MCAP file carries commands, wheels and poses of one source, to the
+    nanosecond, but no other columns.
+
+    Returns:
+        what the format cannot hold, counted.
 
     Raises:
         OutputError: the ending is not one of these, or the file cannot be written.
-        LogError: the log has no poses and could not be read again.
+        LogError: the log has neither poses nor turns of a gyro, or the format holds no such inputs or poses.
     """
     path = Path(path)
-    if not any(len(run.poses) for run in log.runs):
+    if not any(len(run.poses) for run in log.runs) and not gyro_alone(log.runs):
         raise LogError(
             "the log has no poses to write",
             where=", ".join(source.path for source in log.sources),
@@ -29,8 +33,7 @@ def save_log(log: Log, path: str | Path) -> None:
     if path.name.endswith(".mcap"):
         from slipwise.logs.write_bag import write_mcap
 
-        write_mcap(log, path)
-        return
+        return write_mcap(log, path)
     from slipwise.logs.write_tidy import write_csv, write_parquet
 
     if path.name.endswith((".csv", ".csv.gz")):
@@ -40,3 +43,4 @@ def save_log(log: Log, path: str | Path) -> None:
     else:
         advice = "end the name in .csv, .csv.gz, .parquet or .mcap"
         raise OutputError("unknown kind of log file", where=str(path), advice=advice)
+    return ()

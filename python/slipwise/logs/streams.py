@@ -13,9 +13,11 @@ from slipwise.errors import LogError
 from slipwise.logs.absurd_speeds import FASTEST, absurd_speeds
 from slipwise.logs.fixes import NO_FIX
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Poses
+from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Forces, Inputs, Ints, Poses
 from slipwise.logs.stamps import LATEST, forward_stamps, unit_advice
 
+INCOMPLETE = "with a number missing or impossible"
+WITHOUT_FIX = "of which the receiver has no fix"
 _TOO_MANY_ABSURD = 0.1  # part of a stream; more absurd samples than this are no accident
 _STEEPEST = 2.0 * np.pi  # [rad] a roll or pitch beyond a whole turn is no angle
 
@@ -61,7 +63,7 @@ def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
     for name, values in stream.columns.items():
         if name not in stream.optional:
             finite &= np.abs(values) < ABSURD
-    stream = _keep(stream, finite, tally, "incomplete", "with a number missing or impossible")
+    stream = _keep(stream, finite, tally, "incomplete", INCOMPLETE)
     keep, duplicate, backward = forward_stamps(stream.t)
     if keep.all():
         return stream
@@ -88,16 +90,8 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
     clean = clean_stream(stream, tally)
     columns = clean.columns
     frame = order_codes(columns["frame"]) if "frame" in columns else np.zeros(len(clean.t), np.int64)
-    others = {name: columns.get(name) for name in OPTIONAL_POSE_COLUMNS}
-    largest = {"roll": _STEEPEST, "pitch": _STEEPEST}
-    others = {
-        name: v if v is None else np.where(np.abs(v) < largest.get(name, ABSURD), v, np.nan)
-        for name, v in others.items()
-    }
-    for name in ("std_xy", "std_yaw"):  # 0 and less is how many programs write that it is not known
-        deviation = others[name]
-        if deviation is not None:
-            others[name] = np.where(deviation > 0.0, deviation, np.nan)
+    given = {name: columns.get(name) for name in OPTIONAL_POSE_COLUMNS}
+    others = {name: v if v is None else believed(name, v) for name, v in given.items()}
     others = {name: None if v is None or np.isnan(v).all() else v for name, v in others.items()}
     return Poses(
         t=clean.t,
@@ -110,11 +104,35 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
     )
 
 
+def to_forces(stream: RawStream, tally: Tally) -> Forces | None:
+    """Make known forces of the columns force_x and force_y, each held until it is said again."""
+    clean = clean_stream(stream, tally)
+    if len(clean.t) == 0:
+        return None
+    x, y = (_held(clean.columns.get(name), len(clean.t)) for name in ("force_x", "force_y"))
+    return Forces(clean.t, x, y)
+
+
+def _held(values: Floats | None, count: int) -> Floats:
+    """Return the last number that was said, 0 before the first."""
+    if values is None:
+        return np.zeros(count)
+    last = np.maximum.accumulate(np.where(np.isfinite(values), np.arange(count), -1))
+    return np.where(last >= 0, np.nan_to_num(values)[np.maximum(last, 0)], 0.0)
+
+
+def believed(name: str, values: Floats) -> Floats:
+    """Return what is measured beside a pose [N], NaN where it is no such measurement."""
+    if name in ("std_xy", "std_yaw"):  # 0 and less is how many programs write that it is not known
+        return np.where((values > 0.0) & (values < ABSURD), values, np.nan)
+    return np.where(np.abs(values) < (_STEEPEST if name in ("roll", "pitch") else ABSURD), values, np.nan)
+
+
 def without_fix(stream: RawStream, tally: Tally) -> RawStream:
     """Leave out, and count, positions of which the receiver says that it has none."""
     if "fix" not in stream.columns:
         return stream
-    return _keep(stream, stream.columns["fix"] != NO_FIX, tally, "no-fix", "of which the receiver has no fix")
+    return _keep(stream, stream.columns["fix"] != NO_FIX, tally, "no-fix", WITHOUT_FIX)
 
 
 def _without_absurd_speeds(stream: RawStream, tally: Tally) -> RawStream:

@@ -9,7 +9,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,31 @@ if TYPE_CHECKING:
 
 EMPTY_CELLS = ["", "NA", "N/A", "#N/A", "null", "NULL", "None"]  # no measurement; "nan" is a faulty one
 _BLOCK = 1 << 20  # bytes
+
+
+class Columns(Protocol):
+    """Rows of a tidy log by their columns: of a file, or of a line that just came."""
+
+    @property
+    def path(self) -> Path:
+        """Where they come from."""
+
+    @property
+    def names(self) -> list[str]:
+        """The column names."""
+
+    @property
+    def named(self) -> bool:
+        """False: the names are numbers, from 0."""
+
+    @property
+    def comment(self) -> str:
+        """The last line above the rows that is a comment."""
+
+    def __len__(self) -> int: ...
+
+    def numbers(self, name: str, tally: Tally) -> Floats:
+        """Return a column as numbers, NaN where the cell is empty or not finite, which is counted."""
 
 
 @dataclass(frozen=True)

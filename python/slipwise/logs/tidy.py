@@ -33,14 +33,19 @@ from slipwise.logs.navsat import with_course
 from slipwise.logs.options import LogOptions
 from slipwise.logs.pose_file import refuse_poses_alone
 from slipwise.logs.run_name import run_name
-from slipwise.logs.streams import RawStream, clean_stream, order_codes, to_inputs, to_poses, without_fix
-from slipwise.logs.table import Table, read_csv, read_parquet
+from slipwise.logs.streams import (
+    RawStream,
+    clean_stream,
+    order_codes,
+    to_forces,
+    to_inputs,
+    to_poses,
+    without_fix,
+)
+from slipwise.logs.table import Columns, Table, read_csv, read_parquet
 from slipwise.logs.tidy_columns import (
-    KNOWN,
+    FORCE,
     MEASURED_BESIDE,
-    NUMERIC,
-    POSE_COLUMNS,
-    TEXT,
     USED,
     InputColumns,
     command_columns,
@@ -49,6 +54,10 @@ from slipwise.logs.tidy_columns import (
     require_columns,
     wheel_columns,
 )
+from slipwise.logs.vocabulary import BY_NAME, NUMERIC, POSE_COLUMNS, TEXT
+
+HELD_BY = ("x", "y", "yaw", "z", "roll", "pitch")  # a row that repeats these holds the pose before
+UNNAMED = "poses whose rows name no source, beside others that do"
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +70,7 @@ class _Rows:
     pose: dict[str, Floats]
     fresh: Bools  # a pose was measured in this row
     source: tuple[Ints, tuple[str, ...]] | None  # whose poses these are: number by row, and names by number
+    forces: dict[str, Floats]
     extra: dict[str, NDArray[Any]]
 
 
@@ -85,7 +95,7 @@ def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
         LogError: the file cannot be read, holds poses alone, or has no column of a name that was given.
         SettingsError: `options.columns` names something that is not a column of a tidy log.
     """
-    check_columns(options.columns, KNOWN)
+    check_columns(options.columns, tuple(BY_NAME))
     columns = options.columns
     if options.poses is not None:  # names of pose columns are those of the other file
         columns = {tidy: own for tidy, own in columns.items() if tidy not in POSE_COLUMNS}
@@ -117,11 +127,7 @@ def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
 
 def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> _Rows:
     names = table.names
-    wanted = ("x", "y", "yaw", *MEASURED_BESIDE) if options.poses is None else ()
-    pose = {name: table.numbers(name, tally) for name in wanted if name in names}
-    if "yaw" in pose and "yaw_body" in names and commanded_by_direction(table, options):
-        pose["yaw"] = table.numbers("yaw_body", tally)  # where yaw is the direction of travel
-        notes.append(f"{table.path.name}: headings are yaw_body")
+    pose = pose_columns(table, options, tally, notes)
     if pose and "fix" in names:
         codes, words = table.codes("fix")
         pose["fix"] = fix_codes(words, str(table.path))[codes]
@@ -137,15 +143,33 @@ def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> 
         pose=pose,
         fresh=_fresh(table, pose, tally, notes) if pose else np.zeros(len(table), bool),
         source=_sources(table, notes) if pose and "source" in names else None,
+        forces={name: table.numbers(name, tally) for name in FORCE if name in names},
         extra=_extra(table, notes),
     )
 
 
-def _sources(table: Table, notes: list[str]) -> tuple[Ints, tuple[str, ...]]:
+def pose_columns(table: Columns, options: LogOptions, tally: Tally, notes: list[str]) -> dict[str, Floats]:
+    """Return the numbers of poses by column; none where they come from another file."""
+    if options.poses is not None:
+        return {}
+    pose = {
+        name: table.numbers(name, tally)
+        for name in ("x", "y", "yaw", *MEASURED_BESIDE)
+        if name in table.names
+    }
+    if "yaw" in pose and "yaw_body" in table.names and commanded_by_direction(table, options):
+        pose["yaw"] = table.numbers("yaw_body", tally)  # where yaw is the direction of travel
+        notes.append(f"{table.path.name}: headings are yaw_body")
+    return pose
+
+
+def _sources(table: Table, notes: list[str]) -> tuple[Ints, tuple[str, ...]] | None:
     """Return whose pose is in each row; the first source is the one that comes first in the table."""
     codes, names = table.codes("source")
     named = np.array([bool(name) for name in names])[codes]
-    order = order_codes(np.where(named, codes, -1)[named]) if named.any() else np.zeros(0, np.int64)
+    if not named.any():
+        return None
+    order = order_codes(codes[named])
     number = np.full(len(codes), -1, dtype=np.int64)
     number[named] = order
     found = tuple(names[codes[int(np.argmax(number == i))]] for i in range(int(number.max(initial=-1)) + 1))
@@ -176,7 +200,7 @@ def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]
         there |= np.isfinite(pose["yaw"])
     where = np.flatnonzero(there)
     same = np.ones(max(len(where) - 1, 0), bool)
-    for name in (name for name in ("x", "y", "yaw", "z", "roll", "pitch", "frame") if name in pose):
+    for name in (name for name in (*HELD_BY, "frame") if name in pose):
         values = pose[name][where]
         same &= (values[1:] == values[:-1]) | (np.isnan(values[1:]) & np.isnan(values[:-1]))
     if "run" in table.names:
@@ -237,11 +261,13 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
 
     def stream(role: str, columns: dict[str, Floats]) -> RawStream:
         values = {key: column[index] for key, column in columns.items()}
-        return RawStream(role, t, values, numbers, table.place, optional=frozenset(OPTIONAL_POSE_COLUMNS))
+        optional = frozenset((*OPTIONAL_POSE_COLUMNS, *FORCE))
+        return RawStream(role, t, values, numbers, table.place, optional)
 
     extra = {key: values[index] for key, values in rows.extra.items()}
     commands = _inputs(stream("commands", rows.commands.columns()), tally) if rows.commands else None
     wheels = _inputs(stream("wheels", rows.wheels.columns()), tally) if rows.wheels else None
+    forces = to_forces(_filled(stream("forces", rows.forces)), tally) if rows.forces else None
     poses, source = empty_poses(), ""
     others: dict[str, Poses] = {}
     if rows.pose:
@@ -250,11 +276,15 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
             poses = _poses(whole.select(rows.fresh[index]), inputs, tally)
         else:
             number, names = rows.source
+            unnamed = rows.fresh[index] & (number[index] < 0)
+            if unnamed.any():
+                place = table.place(int(numbers[np.argmax(unnamed)]))
+                tally.add("no-source", UNNAMED, count=int(unnamed.sum()), where=place)
             found = _by_source(whole, np.where(rows.fresh[index], number[index], -1), len(names))
             poses, *further = (_poses(own, inputs, tally) for own in found)
             others, source = dict(zip(names[1:], further, strict=True)), names[0]
     extra = {"t": t, **extra} if extra else {}
-    return Run(name, commands, wheels, poses, extra, others, source if others else "")
+    return Run(name, commands, wheels, poses, extra, others, source if others else "", forces=forces)
 
 
 def _by_source(whole: RawStream, number: Ints, count: int) -> Iterator[RawStream]:
@@ -275,8 +305,12 @@ def _poses(stream: RawStream, inputs: Inputs | None, tally: Tally) -> Poses:
 
 
 def _inputs(stream: RawStream, tally: Tally) -> Inputs | None:
-    """Make inputs of the rows that hold any of the columns."""
+    return to_inputs(_filled(stream), tally)
+
+
+def _filled(stream: RawStream) -> RawStream:
+    """Return the rows that hold any of the columns."""
     there = np.zeros(len(stream.t), bool)
     for values in stream.columns.values():
         there |= np.isfinite(values)
-    return to_inputs(stream.select(there), tally)
+    return stream.select(there)

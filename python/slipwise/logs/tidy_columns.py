@@ -15,51 +15,26 @@ from slipwise.logs.kinematics import omega_from_curvature, omega_from_steering, 
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
 from slipwise.logs.options import LogOptions
-from slipwise.logs.table import Table
+from slipwise.logs.table import Columns
 from slipwise.logs.vehicle_description import VehicleDescription
+from slipwise.logs.vocabulary import POSE_COLUMNS, SHARED, measured_by
 from slipwise.logs.wheel_readings import twists_of_wheels, wheel_names
 
 MEASURED_BESIDE = tuple(name for name in OPTIONAL_POSE_COLUMNS if name != "fix")  # numbers beside a pose
-TEXT = ("run", "frame", "terrain", "source", "fix")
+FORCE = ("force_x", "force_y")
 CAR = ("throttle", "steering")  # commands without units of a car
-NUMERIC = (
-    *CAR,
-    *(
-        "t",
-        "cmd_v",
-        "cmd_vx",
-        "cmd_vy",
-        "cmd_omega",
-        "cmd_curvature",
-        "cmd_steer",
-        "cmd_dir",
-        "odo_v",
-        "odo_vy",
-    ),
-    *("odo_omega", "wheel_left", "wheel_right", "x", "y", "yaw", *MEASURED_BESIDE),
-)
-USED = frozenset(
-    (
-        "run",
-        "frame",
-        "source",
-        "t",
-        "cmd_v",
-        "cmd_omega",
-        "odo_v",
-        "odo_vy",
-        "odo_omega",
-        "x",
-        "y",
-        "yaw",
-        "pose_new",
-    )
-) | frozenset(OPTIONAL_POSE_COLUMNS)
-KNOWN = (*NUMERIC, *TEXT, "pose_new")  # names of a tidy log
-POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", "source", *OPTIONAL_POSE_COLUMNS))
+#: Columns whose numbers are in the streams of a log; others are carried along beside them.
+USED = frozenset(column.name for column in SHARED) - {"cmd_vy"} | {"source", *OPTIONAL_POSE_COLUMNS, *FORCE}
 _SIZES = "--wheel-radius and --wheel-separation"
 _AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
 _NUMBERED = "t=0,odo_v=1,odo_omega=2"
+_BESIDE = {  # what a column of wheels is used with
+    "odo_v": "odo_omega",
+    "odo_vy": "odo_v and odo_omega",
+    "odo_omega": "odo_v",
+    "wheel_left": "wheel_right",
+    "wheel_right": "wheel_left",
+}
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
 
 
@@ -77,7 +52,7 @@ class InputColumns:
         return twist if self.vy is None else {**twist, "vy": self.vy}
 
 
-def require_columns(table: Table, *, poses: bool, described: bool = False, car: bool = False) -> None:
+def require_columns(table: Columns, *, poses: bool, described: bool = False, car: bool = False) -> None:
     """Check that the table has a time, some input and, where `poses` come from it, a pose.
 
     Wheels of a vehicle that is `described` are looked for when they are read. A `car` is commanded by
@@ -89,7 +64,7 @@ def require_columns(table: Table, *, poses: bool, described: bool = False, car: 
     names = table.names
     poses = poses and ("gyro_z" not in names or bool({"x", "y"} & set(names)))  # turns of a gyro may be all
     missing = [name for name in ("t", *(("x", "y") if poses else ())) if name not in names]
-    commands = "cmd_v" in names or "cmd_vx" in names or (car and {*CAR} <= set(names))
+    commands = bool({"cmd_v", "cmd_vx"} & set(names)) or (car and {*CAR} <= set(names))
     wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)
     driven = commands or wheels or described
     if not driven:
@@ -121,7 +96,9 @@ def require_columns(table: Table, *, poses: bool, described: bool = False, car: 
         )
 
 
-def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> InputColumns | None:
+def command_columns(
+    table: Columns, options: LogOptions, tally: Tally, notes: list[str]
+) -> InputColumns | None:
     """Return the commanded twist per row, or None where the table has no command.
 
     `cmd_vy` is the sideways partner of `cmd_vx`. Where a table also has a `cmd_v` that differs from `cmd_vx`,
@@ -138,8 +115,7 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
         turn = table.numbers("cmd_omega", tally) if "cmd_omega" in names else np.zeros(len(table))
         return InputColumns(speed * np.cos(along), speed * np.sin(along), turn)
     if forward not in names:
-        if "cmd_curvature" in names:
-            notes.append(f"{table.path.name}: cmd_curvature has no cmd_v beside it and is not used")
+        notes += [f"{table.path.name}: {alone}" for alone in _without_speed(table, options)]
         return None
     v = table.numbers(forward, tally)
     omega = _command_omega(table, v, options, tally, notes)
@@ -160,18 +136,34 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
     return InputColumns(v, vy, omega)
 
 
-def commanded_by_direction(table: Table, options: LogOptions) -> bool:
+def _without_speed(table: Columns, options: LogOptions) -> list[str]:
+    """Say which columns of commands are not used where none of them is a speed."""
+    there = [name for name in table.names if measured_by(name) == "command"]
+    pedals = [name for name in there if name in CAR]
+    found = [f"{name} has no cmd_v beside it and is not used" for name in there if name not in pedals]
+    if pedals and options.car is None:
+        found.append(f"{' and '.join(pedals)} are used with --vehicle: a car whose sizes are known")
+    elif pedals:
+        found.append(f"{pedals[0]} is used where throttle and steering are both there")
+    return found
+
+
+def _commands_there(names: Collection[str], options: LogOptions) -> bool:
+    return bool({"cmd_v", "cmd_vx"} & set(names)) or (options.car is not None and {*CAR} <= set(names))
+
+
+def commanded_by_direction(table: Columns, options: LogOptions) -> bool:
     """Whether a vehicle that drives sideways is commanded by a speed and a direction to its x axis."""
     return options.sideways and {"cmd_v", "cmd_dir"} <= set(table.names)
 
 
-def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> InputColumns | None:
+def wheel_columns(table: Columns, options: LogOptions, tally: Tally, notes: list[str]) -> InputColumns | None:
     """Return the twist measured at the wheels per row, or None where the table has none."""
     names = table.names
     if "odo_v" in names and "odo_omega" in names:
         vy = table.numbers("odo_vy", tally) if "odo_vy" in names else None
         return InputColumns(table.numbers("odo_v", tally), vy, table.numbers("odo_omega", tally))
-    commanded = {"cmd_v", "cmd_vx"} & set(names)
+    commanded = _commands_there(names, options)
     if options.wheels is not None and commanded and not any(name.startswith("wheel_") for name in names):
         notes.append(f"{table.path.name}: there are no speeds of the wheels of {options.vehicle}")
         return None
@@ -188,7 +180,7 @@ def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[s
                 f" separation {options.wheel_separation} m"
             )
             return InputColumns(v, None, omega)
-        if "cmd_v" not in names and "cmd_vx" not in names:
+        if not commanded:
             advice = f"give {_SIZES}, or the columns odo_v and odo_omega"
             raise LogError(
                 "wheel speeds need the wheel radius and the wheel_separation",
@@ -199,15 +191,15 @@ def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[s
             f"{table.path.name}: wheel_left and wheel_right have wheel speeds: give {_SIZES} to use them"
         )
         return None
-    if "odo_v" in names:
-        if "cmd_v" not in names and "cmd_vx" not in names:
-            _raise_no_omega(table, "odo_omega", steer=False)
-        notes.append(f"{table.path.name}: odo_v has no odo_omega beside it and is not used")
+    if "odo_v" in names and not commanded:
+        _raise_no_omega(table, "odo_omega", steer=False)
+    alone = [name for name in ("odo_v", "odo_vy", "odo_omega", "wheel_left", "wheel_right") if name in names]
+    notes += [f"{table.path.name}: {name} has no {_BESIDE[name]} beside it and is not used" for name in alone]
     return None
 
 
 def _layout_columns(
-    table: Table, options: LogOptions, vehicle: VehicleDescription, tally: Tally, notes: list[str]
+    table: Columns, options: LogOptions, vehicle: VehicleDescription, tally: Tally, notes: list[str]
 ) -> InputColumns:
     try:
         names = wheel_names(vehicle, table.names)
@@ -219,7 +211,7 @@ def _layout_columns(
     return InputColumns(found.v, found.vy, found.omega)
 
 
-def missing_input(table: Table, wheels: InputColumns | None) -> dict[str, str]:
+def missing_input(table: Columns, wheels: InputColumns | None) -> dict[str, str]:
     """Return what would give an input that the table could have, by the input's name."""
     if wheels is not None or not {"wheel_left", "wheel_right"} <= set(table.names):
         return {}
@@ -228,14 +220,14 @@ def missing_input(table: Table, wheels: InputColumns | None) -> dict[str, str]:
 
 def use_of_column(name: str, names: Collection[str], options: LogOptions) -> tuple[str, str]:
     """Return what a column is used as (empty: not used) and why."""
-    if name in ("t", "run"):
-        return {"t": "time", "run": "run"}[name], ""
-    if name in POSE_COLUMNS:
-        return ("pose", "") if options.poses is None else ("", "--poses gives the poses")
-    if name not in NUMERIC:
+    described = () if options.wheels is None else options.wheels.names
+    of = measured_by(name, described)
+    if not of:
         return "", "slipwise has no such column; --columns gives it another name"
-    why = _unused_because(name, names, options)
-    return ("", why) if why else ("command" if name.startswith("cmd") else "wheel", "")
+    if name in POSE_COLUMNS and options.poses is not None:
+        return "", "--poses gives the poses"
+    why = _unused_because(name, names, options) if of in ("command", "wheel") else ""
+    return ("", why) if why else (of, "")
 
 
 def _unused_because(name: str, names: Collection[str], options: LogOptions) -> str:
@@ -243,6 +235,8 @@ def _unused_because(name: str, names: Collection[str], options: LogOptions) -> s
     beside = {"odo_v": "odo_omega", "odo_omega": "odo_v"}.get(name, name)
     if beside not in names:
         return f"there is no {beside} beside it"
+    if name in CAR and options.car is None:
+        return "a car's commands without units need --vehicle"
     if name == "cmd_vx" and "cmd_v" in names:
         return "cmd_v is used"
     if name == "cmd_steer" and options.wheelbase is None:
@@ -255,7 +249,7 @@ def _unused_because(name: str, names: Collection[str], options: LogOptions) -> s
 
 
 def _command_omega(
-    table: Table, v: Floats, options: LogOptions, tally: Tally, notes: list[str]
+    table: Columns, v: Floats, options: LogOptions, tally: Tally, notes: list[str]
 ) -> Floats | None:
     """Take cmd_omega; where it is empty the curvature (thesis 3.2), and then the steering angle."""
     names = table.names
@@ -278,7 +272,7 @@ def _filled(omega: Floats | None, other: Floats, note: str, notes: list[str]) ->
     return filled
 
 
-def _raise_no_omega(table: Table, missing: str, *, steer: bool) -> NoReturn:
+def _raise_no_omega(table: Columns, missing: str, *, steer: bool) -> NoReturn:
     turns = f"add a column {missing} [rad/s]" + (" or cmd_curvature [1/m]" if missing == "cmd_omega" else "")
     advice = "give --wheelbase in metres, the table has cmd_steer" if steer else turns
     raise LogError(f"missing columns: {missing}", where=str(table.path), advice=advice)

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.errors import LogError
-from slipwise.logs.log import Bools, Floats, Inputs, Log, Poses, Run
+from slipwise.logs.log import Bools, Floats, Forces, Inputs, Log, Poses, Run
 
 
 def cut_to_span(log: Log, start: float | None, end: float | None) -> Log:
@@ -51,17 +51,28 @@ def _cut_run(run: Run, low: float, high: float) -> Run:
         name: _kept_poses(other, (other.t >= low) & (other.t <= high)) for name, other in run.others.items()
     }
     commands, wheels = _cut(run.commands, low, high), _cut(run.wheels, low, high)
-    return replace(run, commands=commands, wheels=wheels, poses=poses, extra=extra, others=others)
+    forces = run.forces
+    if forces is not None:
+        part = _held_part(forces.t, low, high)
+        forces = Forces(forces.t[part], forces.x[part], forces.y[part])
+    return replace(
+        run, commands=commands, wheels=wheels, poses=poses, extra=extra, others=others, forces=forces
+    )
 
 
 def _cut(inputs: Inputs | None, low: float, high: float) -> Inputs | None:
     if inputs is None:
         return None
-    held = max(int(np.searchsorted(inputs.t, low, side="right")) - 1, 0)
-    part = slice(held, int(np.searchsorted(inputs.t, high, side="right")))
+    part = _held_part(inputs.t, low, high)
     t, v, vy, omega = (column[part] for column in (inputs.t, inputs.v, inputs.vy, inputs.omega))
     cut = Inputs(t, v, vy, omega, None if inputs.car is None else inputs.car.between(part))
     return cut if len(cut) else None
+
+
+def _held_part(t: Floats, low: float, high: float) -> slice:
+    """Return which samples lie in a span, with the one before, which still holds."""
+    held = max(int(np.searchsorted(t, low, side="right")) - 1, 0)
+    return slice(held, int(np.searchsorted(t, high, side="right")))
 
 
 def _kept_poses(poses: Poses, keep: Bools) -> Poses:

@@ -97,6 +97,13 @@ class VehicleDescription(_Part):
     rolling_std: Std = 0.02  # m/s, along the rollers' axes or a plain wheel's direction
     sideways_std: Std = 0.02  # m/s, across a plain wheel
 
+    @property
+    def names(self) -> frozenset[str]:
+        """The names of wheels and joints, of which columns and joints have theirs."""
+        named = [name for wheel in self.wheels for name in (wheel.name, wheel.steer)]
+        hinge = None if self.hinge is None else self.hinge.name
+        return frozenset(name for name in (*named, hinge) if name is not None)
+
     @functools.cached_property
     def layout(self) -> _core.WheelLayout | None:
         """The wheels, or None where there are none; made once, since every message of a live robot asks.

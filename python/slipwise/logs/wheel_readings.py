@@ -14,9 +14,9 @@ from slipwise import _core
 from slipwise.errors import LogError
 from slipwise.logs.log import Floats
 from slipwise.logs.vehicle_description import VehicleDescription
+from slipwise.logs.vocabulary import PREFIXES
 
 _NOT_READ = math.nan
-PREFIXES = ("wheel_", "steer_")  # of columns and joints, before the names of wheels and of steering joints
 
 
 @dataclass(frozen=True, eq=False)

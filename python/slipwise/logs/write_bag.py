@@ -3,16 +3,18 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from slipwise.errors import LogError
 from slipwise.files import write_whole
 from slipwise.logs.bag import RUN_TOPIC, RUN_TYPE
-from slipwise.logs.log import Floats, Log, Run, has_course
+from slipwise.logs.log import Floats, LeftOut, Log, Run, has_course
 from slipwise.logs.messages import ODOMETRY, POSE_WITH_COVARIANCE, TWIST_STAMPED
 from slipwise.logs.rotation import quaternions_of
 
@@ -31,15 +33,20 @@ _UNKNOWN_VARIANCE = 1e6  # of an odometry's unmeasured pose
 Entry = tuple[int, str, bytes | memoryview]  # stamp [ns], topic, serialised message
 
 
-def write_mcap(log: Log, path: Path) -> None:
+def write_mcap(log: Log, path: Path) -> tuple[LeftOut, ...]:
     """Write the log to `path`, whole or not at all; other columns are not carried along.
 
     Runs are laid one after the other: a run keeps its own time if it starts after the one before has ended.
 
+    Returns:
+        what is not carried along, counted.
+
     Raises:
         OutputError: the file cannot be written.
-        LogError: the log holds no sample at all, or one too late for a bag.
+        LogError: the log holds no sample at all, or one too late for a bag, or what no usual topic holds is
+            all that there is.
     """
+    _refuse_unwritable(log, path)
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
@@ -47,7 +54,7 @@ def write_mcap(log: Log, path: Path) -> None:
     end = -1
     for run in log.runs:
         start, stop = _span(run)
-        shift = max(0, -start) if end < 0 else max(0, end + _RUN_GAP_NS - start)
+        shift = max(0, -start) if end < 0 else (0 if start > end else end + _RUN_GAP_NS - start)
         if stop + shift > _LATEST_NS:
             last = (stop + shift) / 1e9
             what = f"run {run.name} ends at {last:.10g} s, and stamps in a bag end at {_LATEST} s"
@@ -55,13 +62,46 @@ def write_mcap(log: Log, path: Path) -> None:
         entries.append((start + shift, RUN_TOPIC, _string(store, run.name)))
         entries.extend(_run_entries(run, shift, store))
         end = stop + shift
-    if not log.runs:
-        raise LogError("there is no run to write")
-    if has_course(log.runs):  # a pose in a bag has a heading, which was not measured
-        advice = "write a table: .csv or .parquet"
-        raise LogError("positions without headings are not written as a bag", where=str(path), advice=advice)
     entries.sort(key=lambda entry: entry[0])
     write_whole(path, lambda temporary: _write(entries, temporary, store))
+    return _not_written(log)
+
+
+def _refuse_unwritable(log: Log, path: Path) -> None:
+    if not log.runs:
+        raise LogError("there is no run to write")
+    what = ""
+    if has_course(log.runs):  # a pose in a bag has a heading, which was not measured
+        what = "positions without headings are"
+    if any(run.commands is not None and run.commands.car is not None for run in log.runs):
+        what = "throttle and steering are"
+    if not any(len(run.poses) for run in log.runs):
+        what = "turns of a gyro alone are"
+    if what:
+        advice = "write a table: .csv or .parquet"
+        raise LogError(f"{what} not written as a bag", where=str(path), advice=advice)
+
+
+def _not_written(log: Log) -> tuple[LeftOut, ...]:
+    """Count what the topics do not hold."""
+    counts: Counter[str] = Counter()
+    for run in log.runs:
+        counts["known forces"] += 0 if run.forces is None else len(run.forces)
+        counts["fixes of a satellite receiver"] += 0 if run.poses.fix is None else len(run.poses)
+        for name, other in run.others.items():
+            counts[f"poses of the source {name}"] += len(other)
+        for name, values in run.extra.items():
+            counts[f"cells of the column {name}"] += 0 if name == "t" else _filled(values)
+    return tuple(
+        LeftOut(f"{what} that a bag does not hold; a table does", count, log.runs[0].name, "not-written")
+        for what, count in counts.items()
+        if count
+    )
+
+
+def _filled(values: NDArray[Any]) -> int:
+    """Return how many cells hold something."""
+    return int(sum(value is not None and value == value for value in values.tolist()))  # NaN is not itself
 
 
 def _write(entries: list[Entry], temporary: Path, store: Typestore) -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +14,7 @@ from numpy.typing import NDArray
 from slipwise.errors import LogError
 from slipwise.files import write_whole
 from slipwise.logs.fixes import fix_words
-from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats, Log, Run
+from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats, Ints, Log, Poses, Run
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -76,44 +78,85 @@ def tidy_table(log: Log) -> pa.Table:
 
 
 def _columns(run: Run) -> dict[str, NDArray[Any]]:
-    """Return the columns of one run, one row for every stamp that occurs."""
-    if run.others:
-        raise LogError(
-            "a table is written of one source of poses alone",
-            advice="read the log with --pose-topic or --poses",
-        )
-    stamps = [series.t for series in (run.commands, run.wheels, run.poses) if series is not None]
+    """Return the columns of one run, one row for every stamp; further sources have rows of their own."""
+    series = (run.commands, run.wheels, run.forces, run.poses)
     extra_t = np.asarray(run.extra.get("t", np.empty(0)), dtype=np.float64)
-    t = np.unique(np.concatenate([*stamps, extra_t[np.isfinite(extra_t)]]))
-    columns: dict[str, NDArray[Any]] = {"t": t}
+    stamps = [each.t for each in series if each is not None] + [extra_t[np.isfinite(extra_t)]]
+    rows = _Rows(np.unique(np.concatenate(stamps)), [other.t for other in run.others.values()])
+    _put_inputs(rows, run)
+    if run.forces is not None:
+        at = rows.of(run.forces.t)
+        rows.put("force_x", at, run.forces.x)
+        rows.put("force_y", at, run.forces.y)
+    rows.columns["pose_new"] = np.zeros(len(rows.t), np.int8)
+    _put_poses(rows, rows.of(run.poses.t), run.poses, run.source if run.others else "")
+    for number, (name, other) in enumerate(run.others.items()):
+        _put_poses(rows, rows.own[number], other, name)
+    kept = np.isfinite(extra_t)
+    taken = set(rows.columns)
+    for name, values in run.extra.items():
+        if name not in taken:
+            rows.put(name, rows.of(extra_t[kept][::-1]), np.asarray(values)[kept][::-1])
+    return rows.columns
 
-    def put(name: str, at: Floats, values: NDArray[Any]) -> None:
+
+class _Rows:
+    """Rows in the order of their stamps.
+
+    Args:
+        shared: stamps [s] of rows that hold all that was measured then, increasing.
+        own: stamps of the rows that each of the further sources has for itself.
+    """
+
+    def __init__(self, shared: Floats, own: Sequence[Floats]) -> None:
+        every = np.concatenate([shared, *own])
+        order = np.argsort(every, kind="stable")
+        place = np.empty(len(every), np.int64)
+        place[order] = np.arange(len(every))
+        edges = np.cumsum([len(shared), *map(len, own)])
+        self._shared, self._place = shared, place[: len(shared)]
+        self.own = [place[start:stop] for start, stop in itertools.pairwise(edges)]
+        self.t: Floats = every[order]
+        self.columns: dict[str, NDArray[Any]] = {"t": self.t}
+
+    def of(self, t: Floats) -> Ints:
+        """Return the shared rows of stamps."""
+        return self._place[np.searchsorted(self._shared, t)]
+
+    def put(self, name: str, rows: Ints, values: NDArray[Any]) -> None:
+        """Set cells of a column, which is empty elsewhere."""
         text = values.dtype.kind in "OUS"
-        column = np.full(len(t), None, dtype=object) if text else np.full(len(t), np.nan)
-        column[np.searchsorted(t, at)] = values
-        columns[name] = column
+        if name not in self.columns:
+            empty = np.full(len(self.t), None, dtype=object) if text else np.full(len(self.t), np.nan)
+            self.columns[name] = empty
+        self.columns[name][rows] = values
 
-    for prefix, inputs in (("cmd", run.commands), ("odo", run.wheels)):
+
+def _put_inputs(rows: _Rows, run: Run) -> None:
+    car = None if run.commands is None else run.commands.car
+    if run.commands is not None and car is not None:  # its speeds are what its curves make of these
+        at = rows.of(run.commands.t)
+        rows.put("throttle", at, car.throttle)
+        rows.put("steering", at, car.steering)
+    for prefix, inputs in (("cmd", None if car is not None else run.commands), ("odo", run.wheels)):
         if inputs is not None:
-            put(f"{prefix}_v", inputs.t, inputs.v)
+            at = rows.of(inputs.t)
+            rows.put(f"{prefix}_v", at, inputs.v)
             if inputs.vy.any():
-                put(f"{prefix}_vy", inputs.t, inputs.vy)
-            put(f"{prefix}_omega", inputs.t, inputs.omega)
-    poses = run.poses
+                rows.put(f"{prefix}_vy", at, inputs.vy)
+            rows.put(f"{prefix}_omega", at, inputs.omega)
+
+
+def _put_poses(rows: _Rows, at: Ints, poses: Poses, source: str) -> None:
     for name in ("x", "y", *(() if poses.course else ("yaw",)), *OPTIONAL_POSE_COLUMNS):
         values = getattr(poses, name)
         if values is not None:
-            put(name, poses.t, fix_words(values) if name == "fix" else values)
-    fresh = np.zeros(len(t), np.int8)
-    fresh[np.searchsorted(t, poses.t)] = 1
-    columns["pose_new"] = fresh
+            rows.put(name, at, fix_words(values) if name == "fix" else values)
+    rows.columns["pose_new"][at] = 1
     if poses.frame.any():
-        put("frame", poses.t, poses.frame.astype(np.float64))
-    kept = np.isfinite(extra_t)
-    for name, values in run.extra.items():
-        if name not in columns:
-            put(name, extra_t[kept][::-1], np.asarray(values)[kept][::-1])
-    return columns
+        rows.put("frame", at, poses.frame.astype(np.float64))
+    if source:
+        rows.put("source", at, np.full(len(poses), source, dtype=object))
 
 
 def _joined(name: str, parts: list[dict[str, NDArray[Any]]]) -> Any:

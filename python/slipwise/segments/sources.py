@@ -12,8 +12,6 @@ from slipwise.logs.log import Poses, Run
 
 Floats = NDArray[np.float64]
 
-_POSE = 7  # columns of a pose, before its source
-
 
 def source_names(runs: Iterable[Run]) -> tuple[str, ...]:
     """Return the names of the sources of poses; the first is that of the poses which predictions start from.
@@ -33,23 +31,18 @@ def source_names(runs: Iterable[Run]) -> tuple[str, ...]:
 def sourced_rows(run: Run, poses: Floats, sources: Sequence[str]) -> Floats:
     """Return rows of (t, x, y, yaw, frame, std_xy, std_yaw, source, fix) in the order of their stamps.
 
-    Where forces are known, (force_x, force_y) follow.
-
     Args:
         run: what was measured.
         poses: rows of the first source, as `recording_rows` returns them.
         sources: all names, the first source's first.
     """
     first = run.poses if run.poses.measured is None else run.poses.measured
-    pose, forces = poses[:, :_POSE], poses[:, _POSE + 2 :]
-    parts = [np.column_stack((pose, np.zeros(len(poses)), _fixes(first), forces))]
+    parts = [np.column_stack((poses, np.zeros(len(poses)), _fixes(first)))]
     for number, name in enumerate(sources[1:], start=1):
         if name in run.others:
             other = run.others[name]
-            pushed = known_forces(other) if forces.shape[1] else None
-            beside = np.zeros((len(other), forces.shape[1])) if pushed is None else pushed
             number_of_each = np.full(len(other), float(number))
-            parts.append(np.column_stack((pose_rows(other), number_of_each, _fixes(other), beside)))
+            parts.append(np.column_stack((pose_rows(other), number_of_each, _fixes(other))))
     rows = np.concatenate(parts)
     return rows[np.argsort(rows[:, 0], kind="stable")]
 
@@ -62,23 +55,6 @@ def pose_rows(poses: Poses) -> Floats:
     ]
     yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
     return np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame, *deviations))
-
-
-def known_forces(poses: Poses) -> Floats | None:
-    """Return a known force [m/s^2] at each pose, [M, 2]: the last that was known, 0 before the first.
-
-    None where no force is known.
-    """
-    if poses.force_x is None and poses.force_y is None:
-        return None
-    return np.column_stack([_held(force, len(poses)) for force in (poses.force_x, poses.force_y)])
-
-
-def _held(force: Floats | None, poses: int) -> Floats:
-    if force is None:
-        return np.zeros(poses)
-    last = np.maximum.accumulate(np.where(np.isfinite(force), np.arange(poses), -1))
-    return np.where(last >= 0, np.nan_to_num(force)[np.maximum(last, 0)], 0.0)
 
 
 def _fixes(poses: Poses) -> Floats:

@@ -14,7 +14,7 @@ from slipwise import _core
 from slipwise.logs.gyro import gyro_alone, gyro_rows
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs, LeftOut, Run
-from slipwise.segments.sources import known_forces, pose_rows, sourced_rows
+from slipwise.segments.sources import pose_rows, sourced_rows
 
 Floats = NDArray[np.float64]
 
@@ -78,7 +78,7 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
 
     Commands and wheels as (t, v, vy, omega), attitudes as (t, roll, pitch), poses as (t, x, y, yaw, frame,
     std_xy, std_yaw), with deviations of 0 where they are not known and a yaw of NaN where only positions were
-    measured. Where forces are known, (source, fix, force_x, force_y) follow, the first two of them 0.
+    measured.
     """
     poses = run.poses if run.poses.measured is None else run.poses.measured
     measured = pose_rows(poses)
@@ -86,10 +86,13 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
     if poses.roll is not None and poses.pitch is not None:
         attitudes = np.column_stack((poses.t, poses.roll, poses.pitch))
         attitudes = attitudes[np.isfinite(attitudes).all(axis=1)]
-    forces = known_forces(poses)
-    if forces is not None:
-        measured = np.column_stack((measured, np.zeros((len(poses), 2)), forces))
     return input_rows(run.commands), input_rows(run.wheels), attitudes, measured
+
+
+def force_rows(run: Run) -> Floats:
+    """Return known forces as rows of (t, x, y), [N, 3]."""
+    forces = run.forces
+    return np.empty((0, 3)) if forces is None else np.column_stack((forces.t, forces.x, forces.y))
 
 
 def recording_of(
@@ -107,7 +110,7 @@ def recording_of(
     commands, wheels, attitudes, poses = recording_rows(run)
     if sources:
         poses = sourced_rows(run, poses, sources)
-    rows = (commands, wheels, attitudes, poses, gyro_rows(run))
+    rows = (commands, wheels, attitudes, poses, gyro_rows(run), force_rows(run))
     return _core.Recording(*(_between(each, since, until) for each in rows))
 
 

@@ -18,7 +18,6 @@ from slipwise.calibration.sloping_ground import (
     SLOPE_BASES,
     for_the_ground_of,
     has_attitude,
-    with_gravity,
 )
 from slipwise.logs.log import Log
 
@@ -93,7 +92,7 @@ def test_a_learner_tries_terms_of_gravity_where_an_attitude_is_announced() -> No
     assert plain.settings == Settings()
     assert set(SLOPE_BASES) < set(remembering.settings.auto.bases)
     chosen = Settings().choosing("edd-2", None)
-    assert MotionLearner("command", chosen, attitude=True).settings == chosen == with_gravity(chosen)
+    assert MotionLearner("command", chosen, attitude=True).settings == chosen
 
 
 def test_terms_of_sideways_speed_are_tried_where_the_vehicle_drives_so() -> None:

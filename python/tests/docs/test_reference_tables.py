@@ -13,7 +13,7 @@ from slipwise.calibration import consistency, identifiability, judgement, statis
 from slipwise.calibration.settings import SEGMENT_SECONDS, Settings, make_settings
 from slipwise.evaluation.prediction_file import COLUMNS
 from slipwise.evaluation.result import Score
-from slipwise.logs.tidy_columns import NUMERIC, TEXT
+from slipwise.logs.vocabulary import NUMERIC, TEXT
 from slipwise.models.schema import ModelFile
 
 DOCS = ROOT / "docs"

@@ -11,23 +11,20 @@ from contradictory_logs import sound_log, stopped, turned
 import slipwise as sw
 from slipwise.calibration import make_settings
 from slipwise.calibration.prepared_run import prepare_run
-from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.errors import LogError, SlipwiseError
 from slipwise.live.build import build_node
+from slipwise.live.coming import coming_of
 from slipwise.live.replay import Replay
 from slipwise.logs import Log, LogOptions, open_log
-from slipwise.logs.gyro import gyro_alone
-from slipwise.logs.log import has_course
 
 QUICK = ("base_wheel_yawzero", "base_command_flipv", "base_command_spike15")
 
 
 def difference(log: Log, input_name: str, basis: str = "auto") -> str:
     """Say what a live node says otherwise than `calibrate`; empty where nothing is."""
-    live = {"positions": has_course(log.runs), "gyro_alone": gyro_alone(log.runs)}
-    replayed = Replay(log, input_name, rate=0.0)
-    settings = make_settings({"basis": basis, "live": live | {"sources": list(replayed.sources)}})
-    settings = for_the_ground_of(log, settings)
+    replayed, said = Replay(log, input_name, rate=0.0), coming_of(log).settings()
+    live = {name: value for name, value in said.items() if value is not None}
+    settings = make_settings({"basis": basis, "live": live})
     built = build_node(replayed, input_name, settings)
     built.learning.learner.know_log(log)
     built.node.run()

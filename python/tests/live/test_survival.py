@@ -12,9 +12,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
-from sample_logs import Drive, simulated_log
 from scripted_node import SLIP, Scripted, driven, run_node
 
 from slipwise.calibration import Settings
@@ -24,10 +22,8 @@ from slipwise.live.build import Built, build_node
 from slipwise.live.lines import MOST_BYTES
 from slipwise.live.outputs import Output, Status
 from slipwise.live.pipe import Pipe, bounded_lines
-from slipwise.live.replay import Replay
 from slipwise.live.samples import Request, Sample
 from slipwise.live.udp import Udp
-from slipwise.logs import Log
 
 HEADER = b"t,odo_v,odo_omega,x,y,yaw,roll,pitch\n"
 HOSTILE = {
@@ -171,14 +167,6 @@ def test_an_error_among_the_samples_ends_a_replay_with_it() -> None:
 
     with pytest.raises(LogError, match="a fault in the log"):
         build_node(Scripted(samples()), "wheel", Settings(), run="a log").node.run()
-
-
-def test_a_log_with_known_forces_is_refused_before_it_is_replayed() -> None:
-    (run,) = simulated_log(Drive(seconds=5.0)).runs
-    force = np.zeros(len(run.poses))
-    pushed = replace(run, poses=replace(run.poses, force_x=force, force_y=force))
-    with pytest.raises(LogError, match="known forces cannot be replayed live"):
-        Replay(Log(runs=(pushed,)), "wheel", rate=0.0)
 
 
 def test_results_on_a_full_disk_are_lost_counted_and_said() -> None:

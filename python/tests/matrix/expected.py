@@ -14,32 +14,21 @@ REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
     (lambda s: s.learns == "wheel", "to-mppi", "was not learned from commands"),
     (lambda s: s.learns == "command", "to-diff-drive to-amcl to-autoware", "calibrate with `--input wheel`"),
     (lambda s: "positions" in s.name, "mcap", "positions without headings are not written as a bag"),
-    (lambda s: s.name.startswith("sources"), "parquet mcap", "one source of poses alone"),
     (lambda s: s.before is not None, "several-logs", "has no wheel input"),
     (lambda s: s.name == "throttle-gyro", "calibrate", "cannot be learned from yaw rates alone"),
     (lambda s: s.name == "force-world", "rollout mppi trajectory", "know no heading over the map"),
-    (lambda s: s.name == "force", "replay lines pushed ahead", "known forces cannot be replayed live"),
+    (lambda s: s.robot.kind == "throttle", "mcap", "throttle and steering are not written as a bag"),
+    (lambda s: s.name in ("gyro", "gyro-commands"), "mcap", "turns of a gyro alone are not written as a bag"),
 )
 
 #: Cells that are wrong, by why they are; a test turns up when its cell is mended.
 WRONG: dict[str, str] = {
-    "`live --vehicle` takes the vehicle's file for a name": """
-        sideways-vehicle:replay swerve:replay throttle:replay throttle-positions:replay tracks:replay""",
-    "lines know seven columns": """
-        sideways:lines sideways-vehicle:lines swerve:lines steering:lines throttle:lines tracks:lines
-        positions:lines positions-gyro:lines gyro:lines gyro-commands:lines force:lines""",
-    "a bag takes throttle and steering for speeds": "throttle:mcap",
-    "forces are dropped from a bag": "force:mcap",
-    "a table cannot be written of yaw rates alone": """
-        gyro:parquet gyro:mcap gyro-commands:parquet gyro-commands:mcap""",
+    "a bag holds no forces, which convert says and counts": "force:mcap",
     "the lags stand behind the kinematics": """
         steering:predict steering:rollout steering:trajectory steering:c-header steering:to-mppi
         steering:to-px4 steering:to-ardupilot""",
     "a car's lags are not among what is shown": "throttle:show",
     "a car's curves are not compared": "throttle-tighter:compare",
-    "odo_v without odo_omega hides throttle and steering": """
-        throttle-odometry:inspect throttle-odometry:calibrate""",
-    "forces in rows without a pose are dropped": "force-late:calibrate",
     "a path is of poses as they are stamped, late": "clock:predict clock:rollout clock:c-header clock:ahead",
     "a log of yaw rates is not learned beside one of poses": "gyro:several-logs gyro-commands:several-logs",
 }

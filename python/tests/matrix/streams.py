@@ -20,7 +20,7 @@ import slipwise as sw
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.live.replay import samples_of
-from slipwise.live.samples import Command, Gyro, Pose, Sample, Wheels
+from slipwise.live.samples import Command, Gyro, KnownForce, Pose, Sample, Wheels
 from slipwise.logs import Log
 from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import has_course
@@ -140,6 +140,8 @@ def push(learner: sw.MotionLearner, sample: Sample) -> None:
         learner.push_command(sample.t, sample.v, sample.omega, sample.vy)
     elif isinstance(sample, Wheels):
         learner.push_wheels(sample.t, sample.v, sample.omega, sample.vy)
+    elif isinstance(sample, KnownForce):
+        learner.push_force(sample.t, sample.x, sample.y)
     elif isinstance(sample, Gyro):
         learner.push_gyro(sample.t, sample.rate)
     elif isinstance(sample, Pose):

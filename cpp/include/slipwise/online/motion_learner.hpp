@@ -110,6 +110,8 @@ class MotionLearner {
   void start_run();
   /// Nothing more comes of this run: what waits for later measurements is learned.
   void end_run();
+  /// Takes a measurement of any kind, as the function for its kind does.
+  void push(const Measurement& measurement);
   /// Of a car (`StreamSettings::car`) v is the throttle and omega the steering.
   void push_command(double t, const BodyTwist& twist);
   void push_wheels(double t, const BodyTwist& twist);
@@ -120,6 +122,9 @@ class MotionLearner {
   void push_gyro(double t, double rate);
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
   void push_attitude(double t, double roll, double pitch);
+  /// A known force over the mass along the robot's axes [m/s^2], which holds until the next one; it pushes as gravity
+  /// does on a slope. Beside attitudes it is rejected.
+  void push_force(const KnownForce& known);
 
   /// What happened since the last call; the oldest are dropped, and counted, when they wait for long.
   std::vector<LearnerEvent> events();

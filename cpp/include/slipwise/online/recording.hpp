@@ -10,23 +10,18 @@
 
 namespace slipwise {
 
-/// Roll and pitch at a stamp.
-struct Attitude {
-  double t;      ///< [s]
-  double roll;   ///< [rad]
-  double pitch;  ///< [rad]
-};
-
 /// One run, each stream in the order of its stamps.
 struct Recording {
   std::vector<InputSample> commands;
   std::vector<InputSample> wheels;
-  std::vector<Attitude> attitudes;
+  std::vector<Tilt> attitudes;
   std::vector<MeasuredPose> poses;
   std::vector<YawRate> gyro = {};
+  std::vector<KnownForce> forces = {};
 };
 
-/// Pushes all of it in the order of the stamps; at one stamp commands come first, poses and then the gyro last.
+/// Pushes all of it in the order of the stamps; at one stamp commands come first, poses and then the gyro last
+/// (`Measurement`).
 void push(MotionLearner& learner, const Recording& run);
 
 /// Recorded runs as segments.

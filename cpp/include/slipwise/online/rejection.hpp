@@ -10,8 +10,8 @@
 namespace slipwise {
 
 /// Which stream a measurement came from.
-enum class Stream : std::uint8_t { Command, Wheels, Pose, Attitude, Gyro };
-inline constexpr std::size_t kStreams = 5;
+enum class Stream : std::uint8_t { Command, Wheels, Pose, Attitude, Gyro, Force };
+inline constexpr std::size_t kStreams = 6;
 constexpr std::size_t enumerators(Stream /*type*/) { return kStreams; }
 
 /// Why a measurement, or a segment, was rejected.
@@ -31,9 +31,10 @@ enum class Reason : std::uint8_t {
   NoCourse,
   NoFix,
   PoorPose,
-  SteepAttitude
+  SteepAttitude,
+  ForceBesideAttitude
 };
-inline constexpr std::size_t kReasons = 16;
+inline constexpr std::size_t kReasons = 17;
 constexpr std::size_t enumerators(Reason /*type*/) { return kReasons; }
 
 /// A short stable name, such as "duplicate-stamp".

@@ -14,9 +14,11 @@
 #include "slipwise/online/body_rates.hpp"
 #include "slipwise/online/car_stream.hpp"
 #include "slipwise/online/chord_finder.hpp"
+#include "slipwise/online/force_buffer.hpp"
 #include "slipwise/online/gyro_buffer.hpp"
 #include "slipwise/online/hold_times.hpp"
 #include "slipwise/online/input_buffer.hpp"
+#include "slipwise/online/measurement.hpp"
 #include "slipwise/online/motion_evidence.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
@@ -92,10 +94,13 @@ class SegmentStream {
   void start_run();
   /// No measurement of this run follows.
   void end_run();
+  void push(const Measurement& measurement);
   void push_command(const InputSample& sample);
   void push_wheels(const InputSample& sample);
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch. Returns those of the robot, where they may be used.
   std::optional<Tilt> push_attitude(const Tilt& measured);
+  /// A known force, which holds until the next one; beside attitudes it is rejected.
+  void push_force(const KnownForce& force);
   /// Yaw rate [rad/s] of a gyro, from which turns between positions are taken; poses tell theirs themselves.
   void push_gyro(const YawRate& sample);
   /// Whether it may be used; otherwise it is rejected.
@@ -154,7 +159,7 @@ class SegmentStream {
     a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
       self.learned_last_);
     a(self.chords_, self.position_last_, self.gyro_, self.heading_, self.others_, self.turned_until_, self.turned_,
-      self.attitudes_, self.evidence_);
+      self.attitudes_, self.evidence_, self.forces_);
   }
 
  private:
@@ -209,6 +214,7 @@ class SegmentStream {
   BodyRates rates_;
   HoldTimes held_;
   TiltBuffer tilts_;
+  ForceBuffer forces_;
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet
   double now_;                       ///< stamp of the pose that is being used, or was last [s]

@@ -23,6 +23,7 @@ class TiltBuffer {
   std::shared_ptr<const Ground> from(double start, double oldest) const;
   void drop_before(double t);
   void clear() { tilts_.clear(); }
+  bool empty() const { return tilts_.empty(); }
 
   /// Names what is saved.
   template <class Self, class Archive>

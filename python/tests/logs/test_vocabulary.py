@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from sample_logs import Drive, simulated_log
 
-from slipwise.logs.shared_columns import BY_NAME, table_schema
+from slipwise.logs.vocabulary import BY_NAME, table_schema
 from slipwise.logs.write_tidy import tidy_table
 
 

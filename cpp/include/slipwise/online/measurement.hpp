@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is measured of a robot, or commanded: one of a few kinds, each with its stamp.
+#pragma once
+
+#include <variant>
+
+#include "slipwise/online/force_buffer.hpp"
+#include "slipwise/online/gyro_buffer.hpp"
+#include "slipwise/online/input_buffer.hpp"
+#include "slipwise/online/pose_gate.hpp"
+#include "slipwise/segment/ground.hpp"
+
+namespace slipwise {
+
+/// Of a car (`StreamSettings::car`) v is the throttle and omega the steering.
+struct CommandSample {
+  InputSample sample;
+};
+
+/// The twist that the wheels measure.
+struct WheelSample {
+  InputSample sample;
+};
+
+/// At one stamp, in this order: what was commanded, and what moved and pushed the robot, come before where it was.
+using Measurement = std::variant<CommandSample, WheelSample, KnownForce, Tilt, MeasuredPose, YawRate>;
+
+/// Several functions as one, which takes each kind of measurement by its own.
+template <class... Functions>
+struct Takes : Functions... {
+  using Functions::operator()...;
+};
+
+}  // namespace slipwise
