@@ -22,16 +22,7 @@ from functools import cache
 from pathlib import Path
 
 LOADED = (
-    *(
-        "pyarrow.csv",
-        "pyarrow.parquet",
-        "pandas",
-        "apsw",
-        "lz4.frame",
-        "rosbags.rosbag2",
-        "rich.table",
-        "yaml",
-    ),
+    *("pyarrow.csv", "pyarrow.parquet", "apsw", "lz4.frame", "rosbags.rosbag2", "rich.table", "yaml"),
     *("slipwise.cli.main", "slipwise.api", "slipwise.calibration.calibrate_sequence"),
     *("slipwise.evaluation", "slipwise.export", "slipwise.logs.bag_file", "slipwise.logs.write_tidy"),
     *("slipwise.models.upgrade", "slipwise.planning", "slipwise.reporting"),
