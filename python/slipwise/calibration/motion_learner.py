@@ -24,7 +24,7 @@ from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
-from slipwise.calibration.settings import Settings, make_settings
+from slipwise.calibration.settings import AVERAGE, Settings, make_settings
 from slipwise.calibration.sideways_seen import SidewaysSeen
 from slipwise.calibration.sloping_ground import for_ground
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
@@ -76,13 +76,19 @@ class MotionLearner(Measurements, RememberedSurfaces):
             gyro_alone: no poses will come: turns of a gyro (`push_gyro`) are all that is learned from.
 
         Raises:
-            SettingsError: there is no such input, a basis or a term is unknown, or two sources have one name.
+            SettingsError: there is no such input, basis or term, two sources have one name, or the
+                estimator is another than the average.
         """
         if len(set(sources)) < len(sources):
             raise SettingsError(f"two sources have one name: {', '.join(sources)}", advice="name each apart")
         if input not in ("command", "wheel"):
             raise SettingsError(f"unknown input '{input}'", advice="use 'command' or 'wheel'")
         settings = settings or Settings()
+        if settings.estimator != AVERAGE:
+            raise SettingsError(
+                f"the estimator {settings.estimator!r} learns whole logs alone",
+                advice=f"leave out estimator: {AVERAGE!r} learns from one measurement at a time",
+            )
         self._input, self._settings = input, for_ground(settings, slopes=attitude, sideways=False)
         self._core = _core.MotionLearner(
             core_settings(

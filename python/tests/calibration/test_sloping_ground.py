@@ -19,7 +19,7 @@ from slipwise.calibration.sloping_ground import (
     for_the_ground_of,
     has_attitude,
 )
-from slipwise.logs.log import Log
+from slipwise.logs.log import Inputs, Log, Run, empty_poses
 
 GRAVITY_TERMS = ("lon.gx", "lat.gy", "ang.gy")
 
@@ -100,3 +100,11 @@ def test_terms_of_sideways_speed_are_tried_where_the_vehicle_drives_so() -> None
     assert for_the_ground_of(level, Settings()).auto.bases == [*AUTO_BASES, *SIDEWAYS_BASES]
     chosen = make_settings({"basis": "edd-2"})
     assert for_the_ground_of(level, chosen) is chosen
+
+
+def test_terms_of_sideways_speed_are_tried_where_the_inputs_have_one() -> None:
+    t = np.arange(0.0, 10.0, 0.1)
+    for aside, more in ((0.3, SIDEWAYS_BASES), (0.01, ())):
+        commands = Inputs(t, np.ones_like(t), aside * np.sin(t), np.zeros_like(t))
+        log = Log((Run("omni", commands, None, empty_poses()),))
+        assert for_the_ground_of(log, Settings()).auto.bases == [*AUTO_BASES, *more]

@@ -15,7 +15,18 @@ from live.sample_outputs import next_moves, surface_at
 from slipwise.errors import LogError
 from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import AppliedParameters, ModelText, Note, Odometry, Path
-from slipwise.live.samples import Command, Override, Pose, Request, RunStart, SurfaceCue, Wheels
+from slipwise.live.samples import (
+    Command,
+    Gyro,
+    KnownForce,
+    Override,
+    Pose,
+    Request,
+    RunStart,
+    SurfaceCue,
+    Unusable,
+    Wheels,
+)
 
 
 def test_a_csv_line_holds_what_its_filled_cells_say() -> None:
@@ -105,3 +116,33 @@ def test_moves_worth_driving_are_a_line() -> None:
 def test_the_surface_is_a_line_with_its_probability() -> None:
     content = json.loads(line_of(surface_at()))
     assert (content["surface"], content["probability"], content["t"]) == ("sand", 0.9, 3.0)
+
+
+def test_a_column_that_is_none_of_a_tidy_log_is_named_once_and_counted() -> None:
+    reader = LineReader()
+    reader.read("t,odo_v,odo_omega,battery")
+    first, *wheels = reader.read("1.0,0.5,0.1,12.1")
+    assert isinstance(first, Unusable)
+    assert first.text == "column 'battery' is none of a tidy log and is not used"
+    assert wheels == [Wheels(1.0, 0.5, 0.1)]
+    assert reader.read("1.1,0.5,0.1,12.0") == [Wheels(1.1, 0.5, 0.1)]
+
+
+def test_what_is_half_there_is_counted_and_the_rest_of_the_line_is_used() -> None:
+    reader = LineReader()
+    reader.read("t,odo_v,odo_omega,x,y,yaw,gyro_z,force_y")
+    half, force, gyro = reader.read("1.0,0.5,,1,2,nan,0.2,0.7")[-3:]
+    assert isinstance(half, Unusable)
+    assert (force, gyro) == (KnownForce(1.0, 0.0, 0.7), Gyro(1.0, 0.2))
+    said = [each.reason for each in reader.read("1.1,0.5,,1.5,2,nan,,") if isinstance(each, Unusable)]
+    assert "wheels with a number missing or impossible" in said
+    assert "poses with a number missing or impossible" in said
+
+
+def test_a_pose_that_is_repeated_is_held_unless_it_is_said_to_be_new() -> None:
+    reader = LineReader()
+    line = '{"t": %s, "x": 1, "y": 2, "yaw": 3%s}'
+    assert reader.read(line % (1, "")) == [Pose(1.0, 1.0, 2.0, 3.0)]
+    (held,) = reader.read(line % (2, ""))
+    assert isinstance(held, Unusable)
+    assert reader.read(line % (3, ', "pose_new": 1')) == [Pose(3.0, 1.0, 2.0, 3.0)]

@@ -17,6 +17,7 @@ REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
     (lambda s: s.before is not None, "several-logs", "has no wheel input"),
     (lambda s: s.name == "throttle-gyro", "calibrate", "cannot be learned from yaw rates alone"),
     (lambda s: s.name == "force-world", "rollout mppi trajectory", "know no heading over the map"),
+    (lambda s: any("estimator=" in each for each in s.settings), "replay lines pushed ahead", "whole logs"),
     (lambda s: s.robot.kind == "throttle", "mcap", "throttle and steering are not written as a bag"),
     (lambda s: s.name in ("gyro", "gyro-commands"), "mcap", "turns of a gyro alone are not written as a bag"),
 )
