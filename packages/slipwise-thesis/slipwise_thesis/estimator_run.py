@@ -7,12 +7,11 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.estimator_run import EstimatorInfo, EstimatorRun
+from slipwise.calibration.estimator_run import EstimatorInfo, EstimatorRun, estimator_info
 from slipwise.calibration.learner import Posterior, Progress
 from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
-from slipwise_thesis import _thesis
 from slipwise_thesis.estimators import estimator_learner, estimator_motion, fed_windows
 
 
@@ -39,7 +38,7 @@ def run_estimator(
     name = settings.estimator
     motion = estimator_motion(name, settings, input_name)
     learner, fed = estimator_learner(name, motion, settings), fed_windows(name, settings, windows)
-    causal = not _thesis.fits_all_segments(name)
+    causal = not estimator_info(name).off_line
     history = _empty_history(fed, motion)
 
     def see(i: int, update: _core.IekfUpdate, posterior: Posterior) -> None:

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from slipwise.calibration.result import Calibration
 from slipwise.evaluation.result import Evaluation, Predictions, Score
@@ -28,6 +29,7 @@ class Contents:
     title: str
     command: str = ""  # the command line that made the report
     model: Path = Path("model.yaml")  # where the model was written
+    kept: dict[str, Any] = field(default_factory=dict, init=False, repr=False)  # what several sections draw
 
     @property
     def longest_horizon(self) -> float | None:

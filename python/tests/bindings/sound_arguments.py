@@ -294,7 +294,6 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "InputHistory.__init__ t": lambda: np.array([0.0, 0.1, 0.2]),
     "FollowingEstimator.__init__ name": lambda: "iekf",
     "DisturbanceModel.__init__ weights": lambda: np.ones(1),
-    "fits_all_segments name": lambda: "iekf",
     "learns_overlapping_segments name": lambda: "iekf",
     "slip_rate_covariance covariance": lambda: 0.01 * np.eye(2),
     "distance_field occupied": lambda: np.eye(6, dtype=np.uint8),

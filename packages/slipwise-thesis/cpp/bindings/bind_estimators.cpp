@@ -53,8 +53,6 @@ void bind_estimators(nb::module_& m) {
   m.def("estimator_names", &estimator_names, "Names that make_estimator knows.");
   m.def("learns_overlapping_segments", &learns_overlapping_segments, "name"_a,
         "True for those that the thesis feeds with overlapping segments at 20 Hz.");
-  m.def("fits_all_segments", &fits_all_segments, "name"_a,
-        "True for those whose estimate is a fit over all segments at once, off-line.");
   m.def("make_estimator", &make_estimator, "name"_a, "model"_a, "prior"_a, "settings"_a, "An estimator by its name.");
   nb::class_<FollowingEstimator>(m, "FollowingEstimator",
                                  "An estimator whose prior follows the speeds and whose noise follows the residuals.")

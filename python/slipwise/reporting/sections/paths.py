@@ -79,15 +79,18 @@ def _typical(drawn: Mapping[ChosenWindow, WindowPaths], predictions: Predictions
 
 def _drawn(contents: Contents) -> dict[ChosenWindow, WindowPaths]:
     """Return the chosen windows whose paths are in the log, by their numbers."""
-    drawn = window_paths(contents, choose_windows(contents))
-    return dict(sorted(drawn.items(), key=lambda item: item[0].number))
+    if "paths" not in contents.kept:
+        drawn = window_paths(contents, choose_windows(contents))
+        contents.kept["paths"] = dict(sorted(drawn.items(), key=lambda item: item[0].number))
+    paths: dict[ChosenWindow, WindowPaths] = contents.kept["paths"]
+    return paths
 
 
 def _paths(contents: Contents) -> tuple[str, list[str]]:
     """Return legend and notes, and the figures but that of the typical path, which stands above."""
     method = contents.learned_method
     predictions = contents.predictions(method, contents.longest_horizon)
-    if predictions is None or method is None or not choose_windows(contents):
+    if predictions is None or method is None or not len(predictions):
         return missing(
             "No window was predicted at the longest horizon, so there are no paths to compare."
         ), []

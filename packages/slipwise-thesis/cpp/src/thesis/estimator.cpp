@@ -18,15 +18,14 @@ Estimator make(const MotionModel& model, const Estimate& prior, const EstimatorS
 struct Entry {
   std::string_view name;
   bool overlapping;
-  bool off_line;
   Make make;
 };
 
-constexpr std::array<Entry, 5> kEstimators{{{"gradient-descent", true, false, make<GradientDescent>},
-                                            {"ekf-thesis", true, false, make<EkfThesis>},
-                                            {"iekf", false, false, make<IekfEstimator>},
-                                            {"delayed-state", false, false, make<DelayedState>},
-                                            {"batch", false, true, make<BatchEstimator>}}};
+constexpr std::array<Entry, 5> kEstimators{{{"gradient-descent", true, make<GradientDescent>},
+                                            {"ekf-thesis", true, make<EkfThesis>},
+                                            {"iekf", false, make<IekfEstimator>},
+                                            {"delayed-state", false, make<DelayedState>},
+                                            {"batch", false, make<BatchEstimator>}}};
 
 const Entry& entry_of(std::string_view name) {
   std::string known;
@@ -50,8 +49,6 @@ std::vector<std::string> estimator_names() {
 }
 
 bool learns_overlapping_segments(std::string_view name) { return entry_of(name).overlapping; }
-
-bool fits_all_segments(std::string_view name) { return entry_of(name).off_line; }
 
 Estimator make_estimator(std::string_view name, const MotionModel& model, const Estimate& prior,
                          const EstimatorSettings& settings) {

@@ -78,11 +78,5 @@ TEST_CASE("it needs the inputs no longer than learning takes") {
   CHECK(alone.estimate().mean == known.estimate().mean);
 }
 
-TEST_CASE("only the batch estimator fits all segments at once") {
-  for (const std::string& name : estimator_names()) {
-    CHECK(fits_all_segments(name) == (name == "batch"));
-  }
-}
-
 }  // namespace
 }  // namespace slipwise

@@ -73,8 +73,6 @@ class Estimator {
 std::vector<std::string> estimator_names();
 /// True for those that the thesis feeds with overlapping segments at 20 Hz.
 bool learns_overlapping_segments(std::string_view name);
-/// True for those whose estimate is a fit over all segments at once, off-line.
-bool fits_all_segments(std::string_view name);
 /// \throws std::invalid_argument naming the known estimators, or when the prior does not fit the model.
 Estimator make_estimator(std::string_view name, const MotionModel& model, const Estimate& prior,
                          const EstimatorSettings& settings);
