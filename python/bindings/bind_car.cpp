@@ -13,55 +13,11 @@
 #include "bindings.hpp"
 #include "slipwise/actuator/car_curves.hpp"
 #include "slipwise/identify/car_curve_filter.hpp"
-#include "slipwise/rollout/car_batch.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace slipwise::bindings {
-
-namespace {
-
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// Commands and twists have two columns per period.
-std::pair<Rows, Rows> twists_of_rollouts(const CarCurves& car, const Rows& commands, const Rows& drive,
-                                         const Rows& past, double period) {
-  const bool even = commands.cols() % 2 == 0 && past.cols() % 2 == 0;
-  if (!even || commands.size() == 0 || drive.cols() != 2 || past.rows() != drive.rows() || drive.rows() == 0) {
-    throw std::invalid_argument("commands and past need two columns a period, and a drive (v, omega) for each start");
-  }
-  std::vector<RolloutStart> starts;
-  std::vector<DriveCommand> sent;
-  for (Eigen::Index i = 0; i < drive.rows(); ++i) {
-    starts.push_back({.pose = {}, .drive = {.v = drive(i, 0), .omega = drive(i, 1)}});
-    for (Eigen::Index k = 0; k < past.cols(); k += 2) {
-      sent.push_back({.v = past(i, k), .omega = past(i, k + 1)});
-    }
-  }
-  const auto rollouts = static_cast<std::size_t>(commands.rows());
-  const CarBatch<double> found =
-      car_batch<double>(car,
-                        {.rollouts = rollouts,
-                         .periods = static_cast<std::size_t>(commands.cols() / 2),
-                         .commands = {commands.data(), commands.data() + 1, commands.cols(), 2},
-                         .starts = starts,
-                         .past = sent},
-                        period);
-  Rows twists(commands.rows(), commands.cols()), before(past.rows(), past.cols());
-  for (std::size_t k = 0; k < found.v.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k % rollouts), column = static_cast<Eigen::Index>(2 * (k / rollouts));
-    twists(row, column) = found.v[k];
-    twists(row, column + 1) = found.omega[k];
-  }
-  for (std::size_t k = 0; k < found.past.size(); ++k) {
-    before.data()[2 * k] = found.past[k].v;
-    before.data()[2 * k + 1] = found.past[k].omega;
-  }
-  return {twists, before};
-}
-
-}  // namespace
 
 void bind_car(nb::module_& m) {
   nb::class_<CarPrior>(m, "CarPrior", "What is taken of a car before it drives: straight curves.")
@@ -116,10 +72,7 @@ void bind_car(nb::module_& m) {
           },
           "commands"_a, "start"_a, "measured"_a.none(),
           "Mean twists from `start` [s] on, until the last of the commands has acted, under commands whose v is the "
-          "throttle and whose omega the steering; `measured` is a time [s] and the speed [m/s] then.")
-      .def("rollouts", &twists_of_rollouts, "commands"_a, "drive"_a, "past"_a, "period"_a,
-           "Mean twists [N, 2 K], v and omega of each period in turn, and those of the past [S, 2 P], of N rollouts "
-           "under commands [N, 2 K] of throttle and steering, sent before [S, 2 P], from drives [S, 2] (v, omega).");
+          "throttle and whose omega the steering; `measured` is a time [s] and the speed [m/s] then.");
 }
 
 }  // namespace slipwise::bindings

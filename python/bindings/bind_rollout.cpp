@@ -7,11 +7,13 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
+#include "slipwise/rollout/car_batch.hpp"
 #include "slipwise/rollout/gpu/gpu.hpp"
 #include "slipwise/rollout/rollout_batch.hpp"
 #include "slipwise/rollout/rollout_covariance.hpp"
@@ -101,8 +103,29 @@ RolloutSetting setting(double period, const std::array<double, 4>& ground, const
           .sideways = sideways};
 }
 
+/// What cars do under commands of throttle and steering: fills `out` [2, K, N]; returns the twists of the past.
+template <typename Scalar>
+Eigen::MatrixX2d car_twists(const CarCurves& car, const Commands<Scalar>& commands, const StartList& starts,
+                            double period, nb::ndarray<Scalar, nb::ndim<3>, nb::c_contig, nb::device::cpu> out,
+                            unsigned threads) {
+  const CarBatch<Scalar> found =
+      car_batch<Scalar>(car, batch_of<Scalar>(commands, starts), period, {.threads = threads});
+  if (out.size() != 2 * found.v.size()) {
+    throw std::invalid_argument("the twists of cars need room for two numbers a command");
+  }
+  std::ranges::copy(found.omega, std::ranges::copy(found.v, out.data()).out);
+  Eigen::MatrixX2d past(static_cast<Eigen::Index>(found.past.size()), 2);
+  for (std::size_t i = 0; i < found.past.size(); ++i) {
+    past.row(static_cast<Eigen::Index>(i)) << found.past[i].v, found.past[i].omega;
+  }
+  return past;
+}
+
 template <typename Scalar>
 void bind_batch(nb::module_& m) {
+  m.def("car_twists", &car_twists<Scalar>, "car"_a, "commands"_a, "starts"_a, "period"_a, "out"_a, "threads"_a,
+        "Mean twists of cars over each period under commands [N, K, 2] of throttle and steering: fills out [2, K, N], "
+        "and returns those of the past [S * P, 2].");
   m.def(
       "rollout_batch",
       [](const RolloutProgram& program, const Commands<Scalar>& commands, const StartList& starts,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "slipwise/actuator/car_stages.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 
@@ -101,6 +102,16 @@ class Drive {
   Pieces pieces_;
 };
 
+/// What advance_car needs, in doubles.
+struct CarFunctions {
+  const CarCurves& car;
+  double duration;  ///< of a step [s]
+
+  double curvature(double steering) const { return car.curvature(steering); }
+  static double size(double x) { return std::abs(x); }
+  double left(double drag) const { return lag_output(1.0, 0.0, car.lag / drag, duration); }
+};
+
 /// [s] after which a car has forgotten its earlier commands.
 double settling(const CarCurves& car) { return 10.0 * std::max(car.lag, car.steering_lag) + 1.0; }
 
@@ -127,14 +138,18 @@ double KnotCurve::operator()(double x) const {
 }
 
 BodyTwist car_twist(const CarCurves& car, const CarState& state) {
-  const double v = state.speed;
-  return {.v = v, .vy = 0.0, .omega = v * car.curvature(state.steering) / (1.0 + car.understeer * v * v)};
+  return {
+      .v = state.speed, .vy = 0.0, .omega = car_yaw_rate(state.speed, car.curvature(state.steering), car.understeer)};
 }
 
 CarState advanced(const CarCurves& car, const CarState& state, const BodyTwist& command, double duration) {
-  const double drag = 1.0 + car.cornering_drag * std::abs(car_twist(car, state).omega);
-  return {.speed = lag_output(state.speed, car.speed(command.v) / drag, car.lag / drag, duration),
-          .steering = lag_output(state.steering, command.omega, car.steering_lag, duration)};
+  const CarStep<double> step{.cornering_drag = car.cornering_drag,
+                             .understeer = car.understeer,
+                             .steering_left = lag_output(1.0, 0.0, car.steering_lag, duration)};
+  const CarLanes<double> after = advance_car(step, CarFunctions{.car = car, .duration = duration},
+                                             CarLanes<double>{.speed = state.speed, .steering = state.steering},
+                                             car.speed(command.v), command.omega);
+  return {.speed = after.speed, .steering = after.steering};
 }
 
 InputHistory car_twists(const CarCurves& car, const InputHistory& commands, const CarSpan& span) {

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each rollout's car goes through its curves by itself; steps are as those of a car's twists.
+// The kernels drive the cars; steps are as those of a car's twists.
 #include "slipwise/rollout/car_batch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
-#include <utility>
+#include <vector>
+
+#include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/rollout/check_batch.hpp"
+#include "slipwise/rollout/kernel_of_level.hpp"
+#include "slipwise/rollout/rollout_threads.hpp"
 
 namespace slipwise {
 namespace {
@@ -15,20 +21,52 @@ constexpr double kLongest = 0.02;     // [s] of a step; over it the yaw rate in 
 constexpr double kStandstill = 0.05;  // [m/s] below which a yaw rate tells nothing of the steering
 constexpr int kHalvings = 40;
 
-/// The mean twist over a period, and the car after it.
-std::pair<BodyTwist, CarState> driven(const CarCurves& car, CarState state, const BodyTwist& command, double period) {
-  const auto steps = std::max(1.0, std::ceil(period / kLongest - 1e-9));
-  BodyTwist mean;
-  for (int i = 0; i < static_cast<int>(steps); ++i) {
-    const CarState before = state;
-    state = advanced(car, state, command, period / steps);
-    const BodyTwist twist = car_twist(
-        car, {.speed = 0.5 * (before.speed + state.speed), .steering = 0.5 * (before.steering + state.steering)});
-    mean.v += twist.v / steps;
-    mean.omega += twist.omega / steps;
-  }
-  return {mean, state};
+std::size_t steps_of(double period) {
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(period / kLongest - 1e-9)));
 }
+
+/// The car after a period under a held command.
+CarState driven(const CarCurves& car, CarState state, const BodyTwist& command, double period) {
+  const std::size_t steps = steps_of(period);
+  for (std::size_t i = 0; i < steps; ++i) {
+    state = advanced(car, state, command, period / static_cast<double>(steps));
+  }
+  return state;
+}
+
+/// The numbers of a curve in lanes.
+template <typename Scalar>
+struct CurveNumbers {
+  std::vector<Scalar> knots, bends;
+  LaneCurve<Scalar> curve{};
+
+  explicit CurveNumbers(const KnotCurve& from) {
+    const std::size_t count = from.at.size();
+    const auto slope = [&](std::size_t i) {
+      return (from.value[i + 1] - from.value[i]) / (from.at[i + 1] - from.at[i]);
+    };
+    double offset = count > 0 ? from.value.front() : 0.0, along = 0.0;
+    if (count > 1) {
+      along = 0.5 * (slope(0) + slope(count - 2));
+      offset -= along * from.at.front();
+      for (std::size_t i = 1; i + 1 < count; ++i) {
+        const double bend = 0.5 * (slope(i) - slope(i - 1));
+        if (bend != 0.0) {
+          knots.push_back(static_cast<Scalar>(from.at[i]));
+          bends.push_back(static_cast<Scalar>(bend));
+          offset -= bend * (from.at[i] - from.at.front());
+        }
+      }
+    }
+    curve = {.knots = knots.data(),
+             .bends = bends.data(),
+             .count = knots.size(),
+             .first = static_cast<Scalar>(count > 0 ? from.at.front() : 0.0),
+             .last = static_cast<Scalar>(count > 0 ? from.at.back() : 0.0),
+             .offset = static_cast<Scalar>(offset),
+             .slope = static_cast<Scalar>(along)};
+  }
+};
 
 /// The steering at which the car turns as it does; its curve does not fall.
 double steering_of(const CarCurves& car, const DriveCommand& drive) {
@@ -44,47 +82,85 @@ double steering_of(const CarCurves& car, const DriveCommand& drive) {
   return 0.5 * (low + high);
 }
 
+/// Where the car of a start begins; adds the twists of its past.
+template <typename Scalar>
+CarState begin_of(const CarCurves& car, const RolloutBatch<Scalar>& batch, std::size_t start, double period,
+                  std::vector<DriveCommand>& past) {
+  const DriveCommand& drive = batch.starts[start].drive;
+  const std::size_t sent = batch.past.size() / batch.starts.size();
+  CarState state{.speed = drive.v, .steering = sent > 0 ? batch.past[start * sent].omega : steering_of(car, drive)};
+  for (std::size_t k = 0; k < sent; ++k) {
+    const DriveCommand& command = batch.past[start * sent + k];
+    const CarState after = driven(car, state, {.v = command.v, .vy = 0.0, .omega = command.omega}, period);
+    state = {.speed = drive.v, .steering = after.steering};
+    const BodyTwist at_speed = car_twist(car, state);
+    past.push_back({.v = at_speed.v, .omega = at_speed.omega});
+  }
+  return state;
+}
+
+template <typename Scalar>
+LaneCarJob<Scalar> job_of(const CarCurves& car, const RolloutBatch<Scalar>& batch, double period) {
+  const auto number = [](double value) { return static_cast<Scalar>(value); };
+  const std::size_t steps = steps_of(period);
+  const double step = period / static_cast<double>(steps);
+  return {.speed = {},
+          .curvature = {},
+          .step = {.cornering_drag = number(car.cornering_drag),
+                   .understeer = number(car.understeer),
+                   .steering_left = number(lag_output(1.0, 0.0, car.steering_lag, step))},
+          .minus_rate = number(car.lag > 0.0 ? -step / car.lag : 0.0),
+          .lags = car.lag > 0.0,
+          .steps = steps,
+          .per_step = number(1.0 / static_cast<double>(steps)),
+          .rollouts = batch.rollouts,
+          .periods = batch.periods,
+          .throttle = batch.commands.v,
+          .steering = batch.commands.omega,
+          .rollout_stride = batch.commands.rollout_stride,
+          .period_stride = batch.commands.period_stride,
+          .v = nullptr,
+          .omega = nullptr};
+}
+
 }  // namespace
 
 template <typename Scalar>
-CarBatch<Scalar> car_batch(const CarCurves& car, const RolloutBatch<Scalar>& batch, double period) {
-  const std::size_t starts = batch.starts.size();
-  if ((starts != 1 && starts != batch.rollouts) || batch.past.size() % starts != 0 || !(period > 0.0)) {
-    throw std::invalid_argument("a car's rollouts need one start, or one each, and a positive period");
+CarBatch<Scalar> car_batch(const CarCurves& car, const RolloutBatch<Scalar>& batch, double period,
+                           const RolloutOptions& options) {
+  check_batch(batch);
+  if (!(period > 0.0) || batch.commands.vy != nullptr) {
+    throw std::invalid_argument("a car's rollouts need throttle and steering, and a positive period");
   }
-  const std::size_t size = batch.rollouts * batch.periods, sent = batch.past.size() / starts;
+  const std::size_t starts = batch.starts.size(), size = batch.rollouts * batch.periods;
   CarBatch<Scalar> result{std::vector<Scalar>(size), std::vector<Scalar>(size), {}};
   std::vector<CarState> begin;
   for (std::size_t i = 0; i < starts; ++i) {
-    const DriveCommand& drive = batch.starts[i].drive;
-    CarState state{.speed = drive.v, .steering = sent > 0 ? batch.past[i * sent].omega : steering_of(car, drive)};
-    for (std::size_t k = 0; k < sent; ++k) {
-      const DriveCommand& command = batch.past[i * sent + k];
-      const auto [twist, after] = driven(car, state, {.v = command.v, .vy = 0.0, .omega = command.omega}, period);
-      const BodyTwist at_speed = car_twist(car, {.speed = drive.v, .steering = after.steering});
-      result.past.push_back({.v = at_speed.v, .omega = at_speed.omega});
-      state = {.speed = drive.v, .steering = after.steering};
-    }
-    begin.push_back(state);
+    begin.push_back(begin_of(car, batch, i, period, result.past));
   }
-  for (std::size_t i = 0; i < batch.rollouts; ++i) {
-    CarState state = begin[starts == 1 ? 0 : i];
-    for (std::size_t k = 0; k < batch.periods; ++k) {
-      const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(i) * batch.commands.rollout_stride +
-                                   static_cast<std::ptrdiff_t>(k) * batch.commands.period_stride;
-      const BodyTwist command{.v = static_cast<double>(batch.commands.v[place]),
-                              .vy = 0.0,
-                              .omega = static_cast<double>(batch.commands.omega[place])};
-      const auto [twist, after] = driven(car, state, command, period);
-      result.v[k * batch.rollouts + i] = static_cast<Scalar>(twist.v);
-      result.omega[k * batch.rollouts + i] = static_cast<Scalar>(twist.omega);
-      state = after;
+  const CurveNumbers<Scalar> speed(car.speed), curvature(car.curvature);
+  LaneCarJob<Scalar> job = job_of(car, batch, period);
+  job.speed = speed.curve;
+  job.curvature = curvature.curve;
+  job.v = result.v.data();
+  job.omega = result.omega.data();
+  const LaneKernelOfLevel<Scalar> kernel = kernel_of<Scalar>(options.level);
+  share_out((batch.rollouts + kernel.lanes - 1) / kernel.lanes, options.threads, [&](std::size_t at, std::size_t end) {
+    alignas(64) std::array<Scalar, kMostLanes> speeds{}, steerings{};
+    for (; at < end; ++at) {
+      const std::size_t first = at * kernel.lanes, count = std::min(kernel.lanes, batch.rollouts - first);
+      for (std::size_t i = 0; i < count; ++i) {
+        const CarState& state = begin[starts == 1 ? 0 : first + i];
+        speeds[i] = static_cast<Scalar>(state.speed);
+        steerings[i] = static_cast<Scalar>(state.steering);
+      }
+      kernel.drive_cars(job, {.speed = speeds.data(), .steering = steerings.data(), .first = first, .count = count});
     }
-  }
+  });
   return result;
 }
 
-template CarBatch<float> car_batch(const CarCurves&, const RolloutBatch<float>&, double);
-template CarBatch<double> car_batch(const CarCurves&, const RolloutBatch<double>&, double);
+template CarBatch<float> car_batch(const CarCurves&, const RolloutBatch<float>&, double, const RolloutOptions&);
+template CarBatch<double> car_batch(const CarCurves&, const RolloutBatch<double>&, double, const RolloutOptions&);
 
 }  // namespace slipwise

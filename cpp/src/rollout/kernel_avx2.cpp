@@ -18,6 +18,7 @@
 #pragma GCC target("arch=x86-64-v3")
 #endif
 #define SLIPWISE_HAS_LEVEL
+#include "slipwise/rollout/lane_car.hpp"
 #include "slipwise/rollout/lane_kernel.hpp"
 #include "slipwise/rollout/lane_limiter.hpp"
 #endif
@@ -35,7 +36,8 @@ struct Level {
 
 template <typename Scalar>
 LaneKernelOfLevel<Scalar> kernel() {
-  return {roll_block<Level, Scalar>, limit_block<Level, Scalar>, Lanes<Level, Scalar>::kLanes};
+  return {roll_block<Level, Scalar>, limit_block<Level, Scalar>, drive_cars<Level, Scalar>,
+          Lanes<Level, Scalar>::kLanes};
 }
 
 }  // namespace
@@ -48,8 +50,8 @@ LaneKernelOfLevel<Scalar> kernel() {
 LaneKernelOfLevel<float> avx2_kernel(float /*scalar*/) { return kernel<float>(); }
 LaneKernelOfLevel<double> avx2_kernel(double /*scalar*/) { return kernel<double>(); }
 #else
-LaneKernelOfLevel<float> avx2_kernel(float /*scalar*/) { return {nullptr, nullptr, 0}; }
-LaneKernelOfLevel<double> avx2_kernel(double /*scalar*/) { return {nullptr, nullptr, 0}; }
+LaneKernelOfLevel<float> avx2_kernel(float /*scalar*/) { return {nullptr, nullptr, nullptr, 0}; }
+LaneKernelOfLevel<double> avx2_kernel(double /*scalar*/) { return {nullptr, nullptr, nullptr, 0}; }
 #endif
 
 }  // namespace slipwise

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "slipwise/rollout/lane_car.hpp"
 #include "slipwise/rollout/lane_kernel.hpp"
 #include "slipwise/rollout/lane_limiter.hpp"
 
@@ -20,10 +21,11 @@ struct Level {
 }  // namespace
 
 LaneKernelOfLevel<float> portable_kernel(float /*scalar*/) {
-  return {roll_block<Level, float>, limit_block<Level, float>, Lanes<Level, float>::kLanes};
+  return {roll_block<Level, float>, limit_block<Level, float>, drive_cars<Level, float>, Lanes<Level, float>::kLanes};
 }
 LaneKernelOfLevel<double> portable_kernel(double /*scalar*/) {
-  return {roll_block<Level, double>, limit_block<Level, double>, Lanes<Level, double>::kLanes};
+  return {roll_block<Level, double>, limit_block<Level, double>, drive_cars<Level, double>,
+          Lanes<Level, double>::kLanes};
 }
 
 }  // namespace slipwise

@@ -14,6 +14,7 @@
 #include "slipwise/rollout/actuator_start.hpp"
 #include "slipwise/rollout/check_batch.hpp"
 #include "slipwise/rollout/gpu/gpu.hpp"
+#include "slipwise/rollout/kernel_of_level.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/limited_commands.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
@@ -21,21 +22,6 @@
 
 namespace slipwise {
 namespace {
-
-template <typename Scalar>
-LaneKernelOfLevel<Scalar> kernel_of(InstructionLevel level) {
-  if (!has_instruction_level(level)) {
-    throw std::invalid_argument("this processor has no " + std::string(name_of(level)) + "; use " +
-                                std::string(name_of(best_instruction_level())));
-  }
-  LaneKernelOfLevel<Scalar> kernel{};
-  if (level == InstructionLevel::Avx512) {
-    kernel = avx512_kernel(Scalar{});
-  } else if (level == InstructionLevel::Avx2) {
-    kernel = avx2_kernel(Scalar{});
-  }
-  return kernel.roll != nullptr ? kernel : portable_kernel(Scalar{});
-}
 
 template <typename Scalar>
 LaneMap<Scalar> lane_map(const Costmap* map) {
@@ -290,7 +276,8 @@ unsigned roll_on(Gpu& gpu, const RolloutProgram& program, const RolloutBatch<Sca
   if (program.limited()) {
     throw std::invalid_argument("a drive with limits is rolled out on the processor only; leave out the GPU");
   }
-  BlockOfBatch<Scalar> place(program, batch, map, {.roll = nullptr, .limit = nullptr, .lanes = kMostLanes}, job);
+  BlockOfBatch<Scalar> place(program, batch, map,
+                             {.roll = nullptr, .limit = nullptr, .drive_cars = nullptr, .lanes = kMostLanes}, job);
   const std::size_t starts = place.differs() ? batch.rollouts : 1;
   std::vector<Scalar> rows(kStartRows * starts);
   for (std::size_t first = 0; first < starts; first += kMostLanes) {

@@ -7,6 +7,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
@@ -44,6 +45,36 @@ Eigen::MatrixXd draw_ahead(const UncertainModel& model, std::size_t sample, std:
   return drawn;
 }
 
+/// What the drive does over a period, and the standard deviations of the noise that comes with it.
+struct DrivenPeriod {
+  Eigen::Vector3d drive;
+  std::array<double, 3> white;
+  std::array<double, 3> constant;
+};
+
+/// The periods of all rollouts, [periods * rollouts]: the same in every sample.
+std::vector<DrivenPeriod> driven_periods(const UncertainModel& model, const RolloutBatch<double>& batch,
+                                         const RolloutOptions& options) {
+  const RolloutPaths drive = roll_paths(drive_alone(model), batch, options);
+  std::vector<DrivenPeriod> periods(batch.periods * batch.rollouts);
+  for (std::size_t n = 0; n < batch.rollouts; ++n) {
+    Pose2 before = batch.starts[batch.starts.size() > 1 ? n : 0].pose;
+    for (std::size_t k = 0; k < batch.periods; ++k) {
+      DrivenPeriod& period = periods[k * batch.rollouts + n];
+      period.drive = period_tangent(before, drive.at(k, n));
+      const PeriodNoise noise = period_noise(period.drive, model.setting.period, model.uncertainty.noise);
+      for (std::size_t c = 0; c < noise.variance.size(); ++c) {
+        const double widened =
+            std::sqrt(model.uncertainty.inflation * model.uncertainty.scale[static_cast<Eigen::Index>(c)]);
+        period.white[c] = widened * std::sqrt(noise.variance[c]);
+        period.constant[c] = widened * noise.constant[c];
+      }
+      before = drive.at(k, n);
+    }
+  }
+  return periods;
+}
+
 /// Drives along a path again, with noise added to the tangent of every period.
 class NoisyPath {
  public:
@@ -62,15 +93,11 @@ class NoisyPath {
     }
   }
 
-  Pose2 next(const Pose2& pose, Eigen::Vector3d tangent, const Eigen::Vector3d& drive) {
-    const PeriodNoise noise = period_noise(drive, model_.setting.period, model_.uncertainty.noise);
+  Pose2 next(const Pose2& pose, Eigen::Vector3d tangent, const DrivenPeriod& period) {
     for (std::size_t c = 0; c < constant_.size(); ++c) {
-      const double widened =
-          std::sqrt(model_.uncertainty.inflation * model_.uncertainty.scale[static_cast<Eigen::Index>(c)]);
-      tangent[static_cast<Eigen::Index>(c)] +=
-          widened * (std::sqrt(noise.variance[c]) * normal_(random_) + noise.constant[c] * constant_[c]);
+      tangent[static_cast<Eigen::Index>(c)] += period.white[c] * normal_(random_) + period.constant[c] * constant_[c];
     }
-    disturbance(tangent, drive);
+    disturbance(tangent, period.drive);
     return compose(pose, exp(tangent));
   }
 
@@ -123,7 +150,7 @@ void sample_futures(const UncertainModel& model, const RolloutBatch<double>& bat
     throw std::invalid_argument("the poses of every sample need room for " + std::to_string(poses) +
                                 " numbers in x, y and theta each, got " + std::to_string(outputs.x.size()));
   }
-  const RolloutPaths drive = roll_paths(drive_alone(model), batch, options);
+  const std::vector<DrivenPeriod> driven = driven_periods(model, batch, options);
   const DisturbedTerms terms = disturbed_terms_of(model);
   const Eigen::MatrixXd parameters = draw_parameters(model, samples, seed);
   share_out(samples, options.threads, [&](std::size_t first, std::size_t last) {
@@ -134,11 +161,10 @@ void sample_futures(const UncertainModel& model, const RolloutBatch<double>& bat
       for (std::size_t n = 0; n < batch.rollouts; ++n) {
         NoisyPath noisy(model, terms, generator(seed, s, n));
         const Pose2 start = batch.starts[batch.starts.size() > 1 ? n : 0].pose;
-        Pose2 before = start, driven = start, pose = start;
+        Pose2 before = start, pose = start;
         for (std::size_t k = 0; k < batch.periods; ++k) {
-          pose = noisy.next(pose, period_tangent(before, paths.at(k, n)), period_tangent(driven, drive.at(k, n)));
+          pose = noisy.next(pose, period_tangent(before, paths.at(k, n)), driven[k * batch.rollouts + n]);
           before = paths.at(k, n);
-          driven = drive.at(k, n);
           const std::size_t at = s * poses + k * batch.rollouts + n;
           outputs.x[at] = pose.x;
           outputs.y[at] = pose.y;

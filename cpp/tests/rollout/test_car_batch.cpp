@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -81,6 +82,61 @@ TEST_CASE("steering sent before is still on its way, and twists of the past have
   CHECK(found.past[1].omega > 0.3);
   CHECK(found.omega[0] > 0.2);
   CHECK(found.omega[kPeriods - 1] == doctest::Approx(0.0).epsilon(1e-3));
+}
+
+/// One car by the laws in doubles, step by step.
+BodyTwist mean_of_period(CarState& state, const BodyTwist& command, double period) {
+  const int steps = 5;  // of 20 ms
+  BodyTwist mean;
+  for (int i = 0; i < steps; ++i) {
+    const CarState before = state;
+    state = advanced(car(), state, command, period / steps);
+    const BodyTwist now = car_twist(car(), {.speed = 0.5 * (before.speed + state.speed),
+                                            .steering = 0.5 * (before.steering + state.steering)});
+    mean.v += now.v / steps;
+    mean.omega += now.omega / steps;
+  }
+  return mean;
+}
+
+/// Largest difference of the lanes to that.
+template <typename Scalar>
+double apart_from_laws(InstructionLevel level) {
+  constexpr std::size_t kRollouts = 37;  // no whole number of blocks
+  std::vector<Scalar> throttle, steering;
+  for (std::size_t i = 0; i < kRollouts * kPeriods; ++i) {
+    throttle.push_back(static_cast<Scalar>(std::sin(0.37 * static_cast<double>(i))));
+    steering.push_back(static_cast<Scalar>(1.1 * std::cos(0.21 * static_cast<double>(i))));
+  }
+  const std::array<RolloutStart, 1> start{{{.pose = {}, .drive = {.v = 0.7, .omega = 0.3}}}};
+  const RolloutBatch<Scalar> batch{.rollouts = kRollouts,
+                                   .periods = kPeriods,
+                                   .commands = {throttle.data(), steering.data(), 1, kRollouts},
+                                   .starts = start};
+  const CarBatch<Scalar> found = car_batch(car(), batch, kPeriod, {.threads = 2, .level = level});
+  double worst = 0.0;
+  for (std::size_t n = 0; n < kRollouts; ++n) {
+    const double steers = 0.3 / 0.7 * (1.0 + car().understeer * 0.49) / 1.5;  // its curve is straight
+    CarState state{.speed = 0.7, .steering = steers};
+    for (std::size_t k = 0; k < kPeriods; ++k) {
+      const std::size_t i = k * kRollouts + n;
+      const BodyTwist mean = mean_of_period(
+          state, {.v = static_cast<double>(throttle[i]), .vy = 0.0, .omega = static_cast<double>(steering[i])}, kPeriod);
+      worst = std::max({worst, std::abs(static_cast<double>(found.v[i]) - mean.v),
+                        std::abs(static_cast<double>(found.omega[i]) - mean.omega)});
+    }
+  }
+  return worst;
+}
+
+TEST_CASE("lanes of cars are the laws in doubles to rounding, at every instruction level") {
+  for (const InstructionLevel level : kInstructionLevels) {
+    if (has_instruction_level(level)) {
+      CAPTURE(name_of(level));
+      CHECK(apart_from_laws<double>(level) < 1e-10);
+      CHECK(apart_from_laws<float>(level) < 2e-5);
+    }
+  }
 }
 
 TEST_CASE("rollouts lie side by side and do not touch each other; numbers that do not fit are refused") {

@@ -51,7 +51,7 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
             f"{samples} samples from seed {seed} cannot be drawn",
             advice="use at least 1 sample, and a seed from 0",
         )
-    numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start)
+    numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start, threads)
     rollouts, periods = numbers.shape[:2]
     result = np.empty((3, samples, periods, rollouts))
     try:

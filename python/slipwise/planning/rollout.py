@@ -95,7 +95,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     numbers = checked_commands(model, commands, dtype)
     check_threads(threads)
     warn_of_unseen_speeds(model, numbers, stacklevel=2)
-    numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start)
+    numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start, threads)
     wanted = _wanted(outputs, costmap)
     rollouts, periods = numbers.shape[:2]
     buffers = {

@@ -21,10 +21,14 @@ struct CarBatch {
 /// What a car does over each period of a batch whose commands are throttle (v) and steering (omega), those of the past
 /// too. A start's drive is what it does then (v, omega). Its steering has followed the past; without any, it stands
 /// where the drive's yaw rate asks for it. Over the past, the speed is taken as that of the start.
+/// \throws std::invalid_argument where starts and past do not fit, a command is not finite, or the processor lacks the
+/// instruction level.
 template <typename Scalar>
-CarBatch<Scalar> car_batch(const CarCurves& car, const RolloutBatch<Scalar>& batch, double period);
+CarBatch<Scalar> car_batch(const CarCurves& car, const RolloutBatch<Scalar>& batch, double period,
+                           const RolloutOptions& options = {});
 
-extern template CarBatch<float> car_batch(const CarCurves&, const RolloutBatch<float>&, double);
-extern template CarBatch<double> car_batch(const CarCurves&, const RolloutBatch<double>&, double);
+extern template CarBatch<float> car_batch(const CarCurves&, const RolloutBatch<float>&, double, const RolloutOptions&);
+extern template CarBatch<double> car_batch(const CarCurves&, const RolloutBatch<double>&, double,
+                                           const RolloutOptions&);
 
 }  // namespace slipwise

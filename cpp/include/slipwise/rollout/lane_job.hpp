@@ -7,6 +7,7 @@
 
 #include "slipwise/lie/lane_function.hpp"
 #include "slipwise/rollout/drive_command.hpp"
+#include "slipwise/rollout/lane_car_job.hpp"
 #include "slipwise/slip/path_edges.hpp"
 
 // Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
@@ -201,6 +202,7 @@ template <typename Scalar>
 struct LaneKernelOfLevel {
   LaneKernel<Scalar> roll;
   LaneLimiter<Scalar> limit;
+  LaneCar<Scalar> drive_cars;
   std::size_t lanes;  ///< rollouts per block
 };
 

@@ -88,42 +88,67 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
   }
 }
 
+/// Where a block's commands are read from; vy where the robot drives sideways.
+template <typename Scalar>
+struct CommandSources {
+  CommandSource<Scalar> v, omega, vy;
+};
+
+template <typename Scalar>
+SLIPWISE_LANES CommandSources<Scalar> sources_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+  const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
+  return {{job.v + first, &block.v, &DriveCommand::v},
+          {job.omega + first, &block.omega, &DriveCommand::omega},
+          {job.vy + (job.vy != nullptr ? first : 0), &block.vy, &DriveCommand::vy}};
+}
+
+template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>
+SLIPWISE_LANES void start_robot(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                                const CommandSources<Scalar>& sources, RobotLanes<L, kActuator, kSlip>& robot) {
+  start_channel(job, block, sources.v, job.shift_v, robot.v);
+  start_channel(job, block, sources.omega, job.shift_omega, robot.omega);
+  start_path<L>(block, robot.path);
+  if constexpr (kSlip == Slip::Any) {
+    if (job.vy != nullptr) {
+      start_channel(job, block, sources.vy, job.shift_v, robot.vy);
+    }
+    fill(static_cast<Scalar>(0), robot.travelled);
+  }
+}
+
+/// The next commands begin to act, where they do with this part.
+template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>
+SLIPWISE_LANES void tell_robot(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                               const CommandSources<Scalar>& sources, const LanePart<Scalar>& part,
+                               RobotLanes<L, kActuator, kSlip>& robot) {
+  if (kActuator == Actuator::None || part.next_v) {
+    tell(job, block, sources.v, robot.v);
+    if constexpr (kSlip == Slip::Any) {
+      if (job.vy != nullptr) {
+        tell(job, block, sources.vy, robot.vy);
+      }
+    }
+  }
+  if (kActuator == Actuator::None || part.next_omega) {
+    tell(job, block, sources.omega, robot.omega);
+  }
+}
+
 /// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
 /// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
 /// it to the period's end, and it goes on from where it was put aside.
 template <class L, Actuator kActuator, Slip kSlip, bool kWide, typename Scalar = L::Scalar>
 SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
-  const CommandSource<Scalar> source_v{job.v + first, &block.v, &DriveCommand::v};
-  const CommandSource<Scalar> source_omega{job.omega + first, &block.omega, &DriveCommand::omega};
+  const CommandSources<Scalar> sources = sources_of(job, block);
   RobotLanes<L, kActuator, kSlip> robot;
-  start_channel(job, block, source_v, job.shift_v, robot.v);
-  start_channel(job, block, source_omega, job.shift_omega, robot.omega);
-  start_path<L>(block, robot.path);
-  const CommandSource<Scalar> source_vy{job.vy + (job.vy != nullptr ? first : 0), &block.vy, &DriveCommand::vy};
-  if constexpr (kSlip == Slip::Any) {
-    if (job.vy != nullptr) {
-      start_channel(job, block, source_vy, job.shift_v, robot.vy);
-    }
-    fill(static_cast<Scalar>(0), robot.travelled);
-  }
+  start_robot<L, kActuator, kSlip>(job, block, sources, robot);
   OutputLanes<L> output(job, block);
   RobotLanes<L, kActuator, kSlip> aside = robot;
   const bool has_tail = job.tail != job.part_end;
   std::size_t period = 0;
   for (std::size_t i = 0; period < job.periods;) {
     const LanePart<Scalar>& part = job.parts[i];
-    if (kActuator == Actuator::None || part.next_v) {
-      tell(job, block, source_v, robot.v);
-      if constexpr (kSlip == Slip::Any) {
-        if (job.vy != nullptr) {
-          tell(job, block, source_vy, robot.vy);
-        }
-      }
-    }
-    if (kActuator == Actuator::None || part.next_omega) {
-      tell(job, block, source_omega, robot.omega);
-    }
+    tell_robot<L, kActuator, kSlip>(job, block, sources, part, robot);
     TangentLanes<L> tangent;
     drive_part<L, kActuator, kSlip>(job, part, robot, tangent);
     step<L, kWide>(tangent, robot.path);

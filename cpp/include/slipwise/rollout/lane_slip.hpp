@@ -34,8 +34,8 @@ struct GradeLanes {
 template <class L>
 struct PartSlip {
   const L::Scalar* coefficients;
-  const GradeLanes<L>* grade;    ///< null on level ground
-  const typename L::Vector* vy;  ///< the mean speed to the left; null where the robot does not drive sideways
+  const GradeLanes<L>* grade;  ///< null on level ground
+  const L::Vector* vy;         ///< the mean speed to the left; null where the robot does not drive sideways
 };
 
 /// Those of the sideways speed, as Term has them.
