@@ -9,8 +9,8 @@ from matrix.situation import Situation
 
 #: Which situations are refused in which uses, and what the refusal says.
 REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
-    (lambda s: s.robot.kind == "throttle", "trajectory c-header to-", "throttle and steering"),
-    (lambda s: s.name in ("sideways-vehicle", "swerve"), "to-", "have no sideways speed"),
+    (lambda s: s.robot.kind == "throttle", "trajectory c-header excite to-", "throttle and steering"),
+    (lambda s: s.name in ("sideways", "sideways-vehicle", "swerve"), "to-", "have no sideways speed"),
     (lambda s: s.learns == "wheel", "to-mppi", "was not learned from commands"),
     (lambda s: s.learns == "command", "to-diff-drive to-amcl to-autoware", "calibrate with `--input wheel`"),
     (lambda s: "positions" in s.name, "mcap", "positions without headings are not written as a bag"),
