@@ -71,7 +71,7 @@ class LiveTable(_Table):
     cache: str | None = None  # folder
     save_every: Seconds = 60.0  # s of the wall clock between two times that the cache is written
     moves_every: Annotated[float, Field(ge=0.0, le=1e6)] = 10.0  # s between two looks for moves; 0: none
-    host: str = "127.0.0.1"  # where the web page and Foxglove are served
+    host: str = "127.0.0.1"  # where the web page is served
     duration: Seconds | None = None  # s of the wall clock, after which the node stops
     gates: GatesTable = GatesTable()
     apply: ApplyTable = ApplyTable()
