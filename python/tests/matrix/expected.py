@@ -24,6 +24,7 @@ REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
 
 #: Cells that are wrong, by why they are; a test turns up when its cell is mended.
 WRONG: dict[str, str] = {
+    "a learner predicts with the force of now, and what pushes later cannot be given": "force:ahead",
     "a bag holds no forces, which convert says and counts": "force:mcap",
     "the lags stand behind the kinematics": """
         steering:predict steering:rollout steering:trajectory steering:c-header steering:to-mppi
