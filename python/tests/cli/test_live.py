@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -30,17 +29,6 @@ def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("live") / "drive.csv"
     sw.save_log(simulated_log(SLIP), path)
     return path
-
-
-def test_a_log_is_replayed_into_the_model_that_calibrate_writes(
-    drive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    live, log = tmp_path / "live.yaml", tmp_path / "calibrate.yaml"
-    assert run(["live", "--replay", str(drive), "--rate", "0", "-o", str(live)]) == 0
-    assert "estimated" in capsys.readouterr().out
-    os.chdir(tmp_path)
-    assert run(["calibrate", str(drive), "--no-report", "-o", str(log)]) == 0
-    assert live.read_bytes() == log.read_bytes()
 
 
 def test_with_a_memory_a_log_is_replayed_into_the_model_that_calibrate_writes_with_one(
