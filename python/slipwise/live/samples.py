@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from slipwise.logs.measurements import Command, Gyro, KnownForce, Pose, Twist, Wheels
+from slipwise.logs.measurements import Command, Gyro, KnownForce, Measurement, Pose, Twist, Wheels
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class Unusable:
     kind: str  # of the sentence
 
 
-Stamped = Command | Wheels | KnownForce | Pose | Gyro | Override
+Stamped = Measurement | Override
 Sample = Stamped | Request | SurfaceCue | RunStart | Unusable
 
 __all__ = [

@@ -62,12 +62,4 @@ class Gyro:
     rate: float  # rad/s, counter-clockwise
 
 
-@dataclass(frozen=True, slots=True)
-class Label:
-    """What the ground is said to be from here on."""
-
-    name: str
-
-
-Stamped = Command | Wheels | KnownForce | Pose | Gyro  # at one stamp in this order
-Measurement = Stamped | Label
+Measurement = Command | Wheels | KnownForce | Pose | Gyro  # at one stamp in this order

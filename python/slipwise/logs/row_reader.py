@@ -17,7 +17,7 @@ from slipwise.logs.corrections import late_by, turned
 from slipwise.logs.fixes import FIXES, NO_FIX, fix_number
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, Floats
-from slipwise.logs.measurements import Command, Gyro, KnownForce, Pose, Stamped, Wheels
+from slipwise.logs.measurements import Command, Gyro, KnownForce, Measurement, Pose, Wheels
 from slipwise.logs.options import LogOptions
 from slipwise.logs.streams import INCOMPLETE, WITHOUT_FIX, believed
 from slipwise.logs.tidy import HELD_BY, UNNAMED, pose_columns
@@ -32,7 +32,7 @@ UNKNOWN = "columns that are none of a tidy log"
 class Row:
     """What a row says."""
 
-    measurements: list[Stamped] = field(default_factory=list)  # at one stamp in the order of their kinds
+    measurements: list[Measurement] = field(default_factory=list)  # at one stamp in the order of their kinds
     label: str = ""  # what the ground is said to be
     run: str | None = None  # whose row it is, where there is such a column
     left_out: list[tuple[str, str]] = field(default_factory=list)  # what cannot be used: to count, and to say
@@ -106,7 +106,7 @@ class RowReader:
                 row.notes.append(note)
         return row
 
-    def _parts(self) -> tuple[tuple[str, Callable[[_View, list[str]], Iterator[Stamped]]], ...]:
+    def _parts(self) -> tuple[tuple[str, Callable[[_View, list[str]], Iterator[Measurement]]], ...]:
         return (
             ("command", self._read_command),
             ("wheel", self._read_wheels),
@@ -128,7 +128,7 @@ class RowReader:
                 self._said.add(name)
                 yield UNKNOWN, f"column {name[:40]!r} is none of a tidy log and is not used"
 
-    def _read_command(self, view: _View, notes: list[str]) -> Iterator[Stamped]:
+    def _read_command(self, view: _View, notes: list[str]) -> Iterator[Measurement]:
         found = command_columns(view, self._options, view.tally, notes)
         twist = self._twist(view, "commands", found, self._options.command_scale)
         if twist is not None:
@@ -138,7 +138,7 @@ class RowReader:
                 raise LogError(beyond, advice="--command-scale divides it")
             yield Command(view.t, v, omega, vy)
 
-    def _read_wheels(self, view: _View, notes: list[str]) -> Iterator[Stamped]:
+    def _read_wheels(self, view: _View, notes: list[str]) -> Iterator[Measurement]:
         found = wheel_columns(view, self._options, view.tally, notes)
         twist = self._twist(view, "wheels", found, self._options.wheel_scale)
         if twist is not None:
@@ -147,19 +147,19 @@ class RowReader:
             self._wheels = {**{name: view.now[name] for name in mine}, "t": view.t}
             yield Wheels(view.t, v, omega, vy)
 
-    def _read_force(self, view: _View, _notes: list[str]) -> Iterator[Stamped]:
+    def _read_force(self, view: _View, _notes: list[str]) -> Iterator[Measurement]:
         said = [view.now_of(name) for name in FORCE]
         if any(map(math.isfinite, said)):
             x, y = (new if math.isfinite(new) else old for new, old in zip(said, self._force, strict=True))
             self._force = (x, y)
             yield KnownForce(view.t, x, y)
 
-    def _read_gyro(self, view: _View, _notes: list[str]) -> Iterator[Stamped]:
+    def _read_gyro(self, view: _View, _notes: list[str]) -> Iterator[Measurement]:
         rate = view.now_of("gyro_z")
         if math.isfinite(rate):
             yield Gyro(view.t, rate)
 
-    def _read_pose(self, view: _View, notes: list[str]) -> Iterator[Stamped]:
+    def _read_pose(self, view: _View, notes: list[str]) -> Iterator[Measurement]:
         columns = pose_columns(view, self._options, view.tally, notes)
         pose = {name: float(values[_NOW]) for name, values in columns.items()}
         if not {"x", "y"} <= set(pose):

@@ -19,9 +19,22 @@ class Column:
     type: str  # string, number or integer, as a Table Schema calls them
     unit: str
     meaning: str
-    shared: bool = False  # a shared log may have it
-    always: bool = False  # no cell of a shared log is empty
-    text: bool = False  # a table of any origin may hold text here
+    marks: str = ""  # shared: a shared log may have it; always: in every row; text: tables may hold text here
+
+    @property
+    def shared(self) -> bool:
+        """Whether a shared log may have it."""
+        return "shared" in self.marks
+
+    @property
+    def always(self) -> bool:
+        """Whether no cell of a shared log is empty."""
+        return "always" in self.marks
+
+    @property
+    def text(self) -> bool:
+        """Whether a table of any origin may hold text here."""
+        return "text" in self.marks
 
 
 COLUMNS = (
@@ -31,19 +44,17 @@ COLUMNS = (
         "string",
         "",
         "one uninterrupted recording; nothing is joined across runs",
-        shared=True,
-        always=True,
-        text=True,
+        "shared always text",
     ),
-    Column("t", "time", "number", "s", "stamp, strictly increasing within a run", shared=True, always=True),
+    Column("t", "time", "number", "s", "stamp, strictly increasing within a run", "shared always"),
     Column("throttle", "command", "number", "1", "of a car, in [-1, 1]"),
     Column("steering", "command", "number", "1", "of a car, in [-1, 1], to the left"),
     Column(
-        "cmd_v", "command", "number", "m/s", "commanded speed, forward; held until the next one", shared=True
+        "cmd_v", "command", "number", "m/s", "commanded speed, forward; held until the next one", "shared"
     ),
     Column("cmd_vx", "command", "number", "m/s", "the same"),
-    Column("cmd_vy", "command", "number", "m/s", "commanded speed, to the left", shared=True),
-    Column("cmd_omega", "command", "number", "rad/s", "commanded yaw rate, counter-clockwise", shared=True),
+    Column("cmd_vy", "command", "number", "m/s", "commanded speed, to the left", "shared"),
+    Column("cmd_omega", "command", "number", "rad/s", "commanded yaw rate, counter-clockwise", "shared"),
     Column("cmd_curvature", "command", "number", "1/m", "commanded curvature"),
     Column("cmd_steer", "command", "number", "rad", "commanded steering angle"),
     Column("cmd_dir", "command", "number", "rad", "commanded direction of travel, from the robot's x axis"),
@@ -53,52 +64,40 @@ COLUMNS = (
         "number",
         "m/s",
         "forward speed measured at the wheels; held until the next one",
-        shared=True,
+        "shared",
     ),
-    Column("odo_vy", "wheel", "number", "m/s", "speed to the left measured at the wheels", shared=True),
+    Column("odo_vy", "wheel", "number", "m/s", "speed to the left measured at the wheels", "shared"),
     Column(
         "odo_omega",
         "wheel",
         "number",
         "rad/s",
         "yaw rate measured at the wheels, counter-clockwise",
-        shared=True,
+        "shared",
     ),
     Column("wheel_left", "wheel", "number", "rad/s", "speed of the left wheels"),
     Column("wheel_right", "wheel", "number", "rad/s", "speed of the right wheels"),
-    Column("x", "pose", "number", "m", "measured position in the frame", shared=True),
-    Column("y", "pose", "number", "m", "measured position in the frame, to the left of x", shared=True),
-    Column("yaw", "pose", "number", "rad", "measured heading, counter-clockwise from x", shared=True),
+    Column("x", "pose", "number", "m", "measured position in the frame", "shared"),
+    Column("y", "pose", "number", "m", "measured position in the frame, to the left of x", "shared"),
+    Column("yaw", "pose", "number", "rad", "measured heading, counter-clockwise from x", "shared"),
     Column("yaw_body", "pose", "number", "rad", "the body's heading, where yaw is the direction of travel"),
-    Column("z", "pose", "number", "m", "measured height, up", shared=True),
-    Column("roll", "pose", "number", "rad", "measured roll, right side down", shared=True),
-    Column("pitch", "pose", "number", "rad", "measured pitch, nose down", shared=True),
-    Column("std_xy", "pose", "number", "m", "standard deviation of x and of y", shared=True),
-    Column("std_yaw", "pose", "number", "rad", "standard deviation of yaw", shared=True),
-    Column("fix", "pose", "string", "", "what a satellite receiver says of the position", text=True),
+    Column("z", "pose", "number", "m", "measured height, up", "shared"),
+    Column("roll", "pose", "number", "rad", "measured roll, right side down", "shared"),
+    Column("pitch", "pose", "number", "rad", "measured pitch, nose down", "shared"),
+    Column("std_xy", "pose", "number", "m", "standard deviation of x and of y", "shared"),
+    Column("std_yaw", "pose", "number", "rad", "standard deviation of yaw", "shared"),
+    Column("fix", "pose", "string", "", "what a satellite receiver says of the position", "text"),
     Column("force_x", "force", "number", "m/s^2", "a known force over the robot's mass along its x axis"),
     Column("force_y", "force", "number", "m/s^2", "the same to its left"),
-    Column("source", "pose", "string", "", "which sensor measured the pose", text=True),
+    Column("source", "pose", "string", "", "which sensor measured the pose", "text"),
     Column(
-        "pose_new",
-        "pose",
-        "integer",
-        "",
-        "1 where a pose was measured in this row, else 0",
-        shared=True,
-        always=True,
+        "pose_new", "pose", "integer", "", "1 where a pose was measured in this row, else 0", "shared always"
     ),
     Column(
-        "frame",
-        "pose",
-        "integer",
-        "",
-        "poses are comparable only inside one frame of one run",
-        shared=True,
-        text=True,
+        "frame", "pose", "integer", "", "poses are comparable only inside one frame of one run", "shared text"
     ),
     Column("gyro_z", "gyro", "number", "rad/s", "measured yaw rate, counter-clockwise"),
-    Column("terrain", "label", "string", "", "name of the surface from here on", text=True),
+    Column("terrain", "label", "string", "", "name of the surface from here on", "text"),
 )
 BY_NAME = {column.name: column for column in COLUMNS}
 SHARED = tuple(column for column in COLUMNS if column.shared)
