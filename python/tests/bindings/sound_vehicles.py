@@ -28,9 +28,7 @@ VEHICLE_OBJECTS: dict[str, Callable[[], Any]] = {"Wheel": lambda: _wheel(0.0, 0.
 VEHICLE_ARGUMENTS: dict[str, Callable[[], Any]] = {
     "Wheel.__init__ behind_hinge": lambda: False,
     "WheelLayout.__init__ wheels": lambda: [_wheel(0.0, 0.3), _wheel(0.0, -0.3)],
-    "CarCurves.rollouts commands": lambda: np.full((3, 6), 0.1),
-    "CarCurves.rollouts drive": lambda: np.array([[0.5, 0.1]]),
-    "CarCurves.rollouts past": lambda: np.full((1, 4), 0.1),
+    "car_twists out": lambda: np.zeros((2, 4, 2)),
     "Wheel.__init__ pivot": lambda: None,
     "WheelLayout.twists hinge": lambda: np.full((3, 2), 0.1),
 }
