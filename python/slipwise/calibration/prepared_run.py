@@ -20,6 +20,7 @@ from slipwise.segments import WindowRules, cut_windows
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+_MANY = {"command": "commands", "wheel": "wheel speeds"}
 INPUT_NAMES = ("command", "wheel")
 LEAST_MEASURED = 2  # poses or yaw rates of a run that is learned from
 OVERLAP = 1.0  # s; runs of one clock overlap by less, where files were split while messages were on the way
@@ -163,7 +164,7 @@ def _lacking(run: Run, input_name: str, *, alone: bool) -> str:
     """Return what a run lacks to be learned from; empty where it has all."""
     inputs = run.commands if input_name == "command" else run.wheels
     if inputs is None or len(inputs) == 0:
-        return "commands" if input_name == "command" else "wheel speeds"
+        return _MANY[input_name]
     if (len(gyro_rows(run)) if alone else len(run.poses)) < LEAST_MEASURED:
         return "yaw rates" if alone else "poses"
     return ""
@@ -225,7 +226,7 @@ def _nothing_to_use(log: Log, input_name: str) -> str:
     if not _input_names(log):
         return "the log has no commands and no wheel speeds"
     if input_name in _input_names(log):
-        return f"no run of the log has both {input_name}s and poses"
+        return f"no run of the log has both {_MANY[input_name]} and poses"
     return f"the log has no {input_name} input" if input_name == "wheel" else "the log has no commands"
 
 
@@ -249,15 +250,15 @@ def _advice(log: Log, input_name: str) -> str:
         if _lost_poses(log):
             return "look at what writes them, or name another pose topic with --pose-topic"
         return "record where the robot went (RTK, lidar, mocap), or name the pose topic with --pose-topic"
+    if input_name in _input_names(log):
+        return f"record poses in the runs that have {_MANY[input_name]}"
     if input_name in log.advice:
         return log.advice[input_name]
     name = f"name the topic with --{input_name}-topic, or the columns (see `slipwise inspect`)"
     others = [other for other in _input_names(log) if other != input_name]
-    if others and input_name not in _input_names(log):
+    if others:
         return f"use --input {others[0]}, or {name}"
-    if not _input_names(log):
-        return "record commands or wheel speeds; name their topic with --command-topic or --wheel-topic"
-    return f"record poses in the runs that have {input_name}s"
+    return "record commands or wheel speeds; name their topic with --command-topic or --wheel-topic"
 
 
 def _input_names(log: Log) -> tuple[str, ...]:

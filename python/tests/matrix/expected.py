@@ -10,11 +10,12 @@ from matrix.situation import Situation
 #: Which situations are refused in which uses, and what the refusal says.
 REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
     (lambda s: s.robot.kind == "throttle", "trajectory c-header excite to-", "throttle and steering"),
-    (lambda s: s.name in ("sideways", "sideways-vehicle", "swerve"), "to-", "have no sideways speed"),
+    (lambda s: s.axes == 3, "to-", "have no sideways speed"),
     (lambda s: s.learns == "wheel", "to-mppi", "was not learned from commands"),
     (lambda s: s.learns == "command", "to-diff-drive to-amcl to-autoware", "calibrate with `--input wheel`"),
     (lambda s: "positions" in s.name, "mcap", "positions without headings are not written as a bag"),
     (lambda s: s.before is not None, "several-logs", "has no wheel input"),
+    (lambda s: s.turns, "several-logs", "no run of the log has both"),
     (lambda s: s.name == "throttle-gyro", "calibrate", "cannot be learned from yaw rates alone"),
     (lambda s: s.name == "force-world", "rollout mppi trajectory", "know no heading over the map"),
     (lambda s: any("estimator=" in each for each in s.settings), "replay lines pushed ahead", "whole logs"),
@@ -27,12 +28,14 @@ WRONG: dict[str, str] = {
     "a learner predicts with the force of now, and what pushes later cannot be given": "force:ahead",
     "a bag holds no forces, which convert says and counts": "force:mcap",
     "the lags stand behind the kinematics": """
-        steering:predict steering:rollout steering:trajectory steering:c-header steering:to-mppi
-        steering:to-px4 steering:to-ardupilot""",
+        steering:predict steering:rollout steering:c-header steering:to-mppi steering:to-px4
+        steering:to-ardupilot""",
     "a car's lags are not among what is shown": "throttle:show",
-    "a car's curves are not compared": "throttle-tighter:compare",
+    "a car's curves are not compared": "throttle-tighter:compare throttle:fleet throttle-tighter:fleet",
+    "a learner asked for a path has no limits of the drive yet": "limits:ahead",
+    "four robots of two drives each scatter too much for one to stand out": """
+        steering:fleet sideways-vehicle:fleet""",
     "a path is of poses as they are stamped, late": "clock:predict clock:rollout clock:c-header clock:ahead",
-    "a log of yaw rates is not learned beside one of poses": "gyro:several-logs gyro-commands:several-logs",
 }
 
 

@@ -39,6 +39,7 @@ class Situation:
     changed: Robot | None = None  # another robot of this sort, which `compare` and `fleet` must tell apart
     uses: tuple[str, ...] = ()  # those that it is tried with; all where there are none
     fleet: bool = False  # learning begins with a fleet's prior
+    also: tuple[str, ...] = ()  # uses that are its own
     turns: bool = False  # only turns are measured: where it drives to is not known
     slow: bool = False
 
@@ -92,9 +93,7 @@ class Situation:
     @property
     def manoeuvre(self) -> Floats:
         """Commands to predict: a stamp and the numbers of each, three of them held over 4 s."""
-        shares = np.array([(0.75, 0.6, 0.7), (0.95, 0.3, 0.2), (0.6, 0.7, 0.85)])[
-            :, [0, *range(1, self.axes)]
-        ]
+        shares = np.array([(0.75, 0.85, 0.7), (0.95, 0.7, 0.85), (0.6, 0.3, 0.3)])[:, : self.axes]
         low, high = np.array(self.ranges).T
         return np.column_stack((np.array([0.0, 1.5, 3.0]), low + shares * (high - low)))
 

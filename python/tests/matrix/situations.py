@@ -50,6 +50,7 @@ SLIPPERY = replace(PLAIN, slip={"lon.V": -0.2, "ang.w": -0.5})
 LIMITED = (replace(DRIVE[0], saturation=0.8, slew=0.8), replace(DRIVE[1], slew=1.5))
 CREEP = {**SLIP, "lat.abs(V)*gy": 0.05}  # of a known force, which acts as gravity does
 CREEPS = ("basis=custom", 'terms.lon=["V"]', 'terms.lat=["abs(V)*gy"]', 'terms.ang=["w"]')
+HITCH = (0.3, 1.0)  # m: behind the robot, and its length
 TURNS = {"ang.w": -0.25}
 IEKF = ("basis=edd-2", "estimator=iekf")
 BATCH = ("basis=edd-2", "estimator=batch")
@@ -171,7 +172,14 @@ SITUATIONS: tuple[Situation, ...] = (
         truth=SLIP,
         changed=TIGHTER,
     ),
-    Situation("trailer", PLAIN, (TOLD, POSES, logs.hitch(0.3, 1.0)), truth=SLIP, changed=TIGHTER),
+    Situation(
+        "trailer",
+        PLAIN,
+        (TOLD, WHEELS, POSES, logs.hitch(*HITCH)),
+        truth=SLIP,
+        changed=TIGHTER,
+        also=("dynamics",),
+    ),
     Situation(
         "positions",
         PLAIN,
@@ -302,7 +310,15 @@ SITUATIONS: tuple[Situation, ...] = (
         changed=TIGHTER,
     ),
     Situation(
-        "prior", PLAIN, (WHEELS, POSES), "wheel", truth=SLIP, fleet=True, changed=TIGHTER, seconds=40.0
+        "prior",
+        PLAIN,
+        (WHEELS, POSES),
+        "wheel",
+        truth=SLIP,
+        fleet=True,
+        slow=True,
+        changed=TIGHTER,
+        seconds=40.0,
     ),
     Situation(
         "own-basis",

@@ -117,9 +117,8 @@ def ahead(learned: Learned) -> None:
     path = learner_of(learned).predict(situation.rows(more), horizon=drives.SECONDS)
     driven = situation.driven(np.vstack((before, more)), situation.seconds + drives.SECONDS)
     through = driven.pose[driven.at(np.array([path.start, path.start + drives.SECONDS]))]
-    drives.close(
-        learned, path.poses[-1], seen_from_start(in_space(situation.robot, through)[:, [0, 1, 5]])[-1]
-    )
+    truth = seen_from_start(in_space(situation.robot, through)[:, [0, 1, 5]])[-1]
+    drives.close(learned, path.poses[-1], truth, share=2.5)  # it starts at the speed that the log ends with
 
 
 def learner_for(learned: Learned, log: Log) -> sw.MotionLearner:

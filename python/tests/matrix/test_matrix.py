@@ -12,11 +12,22 @@ from matrix.expected import refusal, why_wrong
 from matrix.learned import Learned, RefusalError
 from matrix.situation import Situation
 from matrix.situations import SITUATIONS
-from matrix.uses import USES
+from matrix.uses import OWN, USES
 
 from slipwise.errors import SlipwiseError
 
-QUICK = ("inspect", "calibrate", "show", "predict", "rollout")
+SLOW = (
+    "report",
+    "compare",
+    "evaluate",
+    "excite",
+    "replay",
+    "lines",
+    "parquet",
+    "mcap",
+    "several-logs",
+    "fleet",
+)
 
 
 @pytest.fixture(scope="session")
@@ -34,8 +45,8 @@ def learned_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Situation]
 def cells() -> list[object]:
     found: list[object] = []
     for situation in SITUATIONS:
-        for use in situation.uses or USES:
-            slow = situation.slow or use not in QUICK
+        for use in (*(situation.uses or USES), *situation.also):
+            slow = situation.slow or use in SLOW
             marks = [pytest.mark.slow] if slow else []
             why = why_wrong(situation, use)
             if why is not None:
@@ -50,7 +61,7 @@ def test_a_cell_is_right_or_refused_with_advice(
 ) -> None:
     expected = refusal(situation, use)
     try:
-        USES[use](learned_of(situation))
+        (USES | OWN)[use](learned_of(situation))
     except (RefusalError, SlipwiseError) as problem:
         said = str(problem)
         assert expected is not None, f"refused: {said}"

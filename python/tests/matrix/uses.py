@@ -10,7 +10,7 @@ import html
 import re
 from collections.abc import Callable
 
-from matrix import drives, exports, streams
+from matrix import drives, exports, streams, trailer
 from matrix.learned import Learned, verb
 
 from slipwise.models.parameter_table import physical_parameters
@@ -133,3 +133,5 @@ USES: dict[str, Use] = {
     "fleet": fleet,
     **{f"to-{name}": use for name, use in exports.TARGETS.items()},
 }
+#: Uses of single situations.
+OWN: dict[str, Use] = {"dynamics": trailer.dynamics}
