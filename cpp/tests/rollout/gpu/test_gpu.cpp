@@ -210,7 +210,7 @@ TEST_CASE("what lies on the GPU is neither copied there nor back") {
   rollout_batch(program, batch, {.end_x = expected.data()});
   batch.commands.v = v_there;
   CHECK_THROWS_WITH_AS(rollout_batch(program, batch, {.end_x = ends_there}, {.gpu = &gpu}),
-                       doctest::Contains("both in the GPU's"), std::invalid_argument);
+                       doctest::Contains("all in the GPU's"), std::invalid_argument);
   batch.commands.omega = omega_there;
   rollout_batch(program, batch, {.end_x = ends_there}, {.gpu = &gpu});
   move(found.data(), ends_there, kRollouts);
