@@ -110,7 +110,7 @@ def _of_limits(alternative: str, where: str, logs: Sequence[Log]) -> Beside:
     for log in logs:
         first, rest = halves(log)
         model = calibrate(first, input="command").model
-        limits = model.content.limits
+        limits = model.limits_section
         kept += limits is not None
         simple = without_limits(first if limits is None else within(first, limits))
         ratios.append(ratio(errors_on(rest, "command", model), errors_on(rest, "command", simple)))

@@ -65,7 +65,7 @@ def starts(run: Run) -> list[float]:
 def baseline(model: sw.Model) -> sw.Model:
     """Return the model that does at once what is commanded."""
     slip = model.content.slip.model_copy(update={"basis": "none", "lon": [], "lat": [], "ang": []})
-    bare = {"parameters": [], "covariance": [], "dynamics": False, "response": False, "limits": None}
+    bare = {"parameters": [], "covariance": [], "dynamics": False, "response": False, "limit_gains": None}
     return sw.Model(model.content.model_copy(update={"slip": slip, **bare}))
 
 

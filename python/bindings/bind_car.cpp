@@ -5,21 +5,51 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.hpp"
 #include "slipwise/actuator/car_curves.hpp"
 #include "slipwise/identify/car_curve_filter.hpp"
+#include "slipwise/segment/input_spread.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace slipwise::bindings {
 
+namespace {
+
+/// From `start` [s] on until the last of the commands has acted.
+CarSpan whole_span(const CarCurves& car, const InputHistory& commands, double start,
+                   const std::optional<std::pair<double, double>>& measured) {
+  CarSpan span{.start = start, .end = settled_after(car, commands, start)};
+  if (measured) {
+    span.measured = KnownMotion{.t = measured->first, .speed = measured->second};
+  }
+  return span;
+}
+
+CarCurves with_spread(CarCurves car, const Eigen::MatrixXd& covariance, const Eigen::VectorXd& prior_std) {
+  const Eigen::Index size = car_numbers(car).size();
+  if (covariance.rows() != size || covariance.cols() != size || prior_std.size() != size || !covariance.allFinite()) {
+    throw std::invalid_argument("the covariance and the prior of a car need a row for each of its " +
+                                std::to_string(size) + " numbers");
+  }
+  car.spread = std::make_shared<const CarSpread>(CarSpread{.covariance = covariance, .prior_std = prior_std});
+  return car;
+}
+
+}  // namespace
+
 void bind_car(nb::module_& m) {
+  nb::class_<InputSpread>(m, "InputSpread", "What inputs may be, along each direction of their uncertainty.")
+      .def_ro("deviated", &InputSpread::deviated)
+      .def_ro("step", &InputSpread::step, "Standard deviations by which each is off.");
   nb::class_<CarPrior>(m, "CarPrior", "What is taken of a car before it drives: straight curves.")
       .def(
           "__init__",
@@ -64,15 +94,53 @@ void bind_car(nb::module_& m) {
           "twists",
           [](const CarCurves& self, const InputHistory& commands, double start,
              std::optional<std::pair<double, double>> measured) {
-            CarSpan span{.start = start, .end = settled_after(self, commands, start)};
-            if (measured) {
-              span.measured = KnownMotion{.t = measured->first, .speed = measured->second};
-            }
-            return car_twists(self, commands, span);
+            return car_twists(self, commands, whole_span(self, commands, start, measured));
           },
           "commands"_a, "start"_a, "measured"_a.none(),
           "Mean twists from `start` [s] on, until the last of the commands has acted, under commands whose v is the "
-          "throttle and whose omega the steering; `measured` is a time [s] and the speed [m/s] then.");
+          "throttle and whose omega the steering; `measured` is a time [s] and the speed [m/s] then.")
+      .def(
+          "spread",
+          [](const CarCurves& self, const InputHistory& commands, double start,
+             std::optional<std::pair<double, double>> measured) {
+            const CarDeviations deviations = car_deviations(self, commands);
+            InputSpread found{.deviated = {}, .step = deviations.step};
+            for (const CarCurves& car : deviations.cars) {
+              found.deviated.push_back(car_twists(car, commands, whole_span(self, commands, start, measured)));
+            }
+            return found;
+          },
+          "commands"_a, "start"_a, "measured"_a.none(),
+          "How `twists` may be else, along each direction in which the car is uncertain.")
+      .def(
+          "deviations",
+          [](const CarCurves& self, const InputHistory& commands) {
+            CarDeviations found = car_deviations(self, commands);
+            return std::pair(std::move(found.cars), found.step);
+          },
+          "commands"_a,
+          "Cars that differ from this one along the directions of its uncertainty that matter under the commands, and "
+          "by how many standard deviations.")
+      .def("with_spread", &with_spread, "covariance"_a, "prior_std"_a,
+           "The same car, whose `numbers` are uncertain so much.")
+      .def_prop_ro("numbers", &car_numbers,
+                   "Speed and curvature at the knots, lag, steering lag, drag of cornering, understeer.")
+      .def_prop_ro(
+          "covariance",
+          [](const CarCurves& self) { return self.spread ? std::optional(self.spread->covariance) : std::nullopt; },
+          "Of the `numbers`; None where they are taken as exact.")
+      .def_prop_ro(
+          "prior_std",
+          [](const CarCurves& self) { return self.spread ? std::optional(self.spread->prior_std) : std::nullopt; },
+          "Of the `numbers`, before the car drove.");
+  m.def(
+      "input_covariances",
+      [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputHistory& inputs,
+         const InputSpread& spread, const Segment& segment, const std::vector<double>& times) {
+        return input_covariances(model, parameters, {.inputs = inputs, .segment = segment}, spread, times);
+      },
+      "model"_a, "parameters"_a, "inputs"_a, "spread"_a, "segment"_a, "times"_a,
+      "Covariances [3, 3] of the poses at `times` [s] of a segment, of its inputs' uncertainty alone.");
 }
 
 }  // namespace slipwise::bindings

@@ -171,9 +171,15 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     under = None if ground is None else ground.under(_finite_pose(at))
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
-    for seconds in ahead.tolist():
-        segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, *known_force)
-        segment = segment.with_ground(under).with_heading(at[2])
+
+    def segment_over(seconds: float) -> _core.Segment:
+        end = begin + seconds
+        level = _core.Segment(begin, end, _core.Pose2(0.0, 0.0, 0.0), None, *known_force)
+        return level.with_ground(under).with_heading(at[2])
+
+    of_inputs = _of_inputs(model, (inputs, begin, measured), history, segment_over(horizon), begin + ahead)
+    for seconds, of_curves in zip(ahead.tolist(), of_inputs, strict=True):
+        segment = segment_over(seconds)
         posterior = stretches or model.posterior_after(force_age + 0.5 * seconds)
         if known is not None:
             segment = segment.with_measured_actuator(*known)
@@ -182,7 +188,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         else:
             expected = _core.predict_ahead(disturbance, posterior, history, now, segment, slip.in_core)
         poses.append(expected.pose)
-        covariance.append(expected.covariance * student_at(model, seconds).inflation)
+        covariance.append(expected.covariance * student_at(model, seconds).inflation + of_curves)
     dof = np.array([student_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
     if isinstance(ground, ElevationMap):
         ground.check(_in_frame(np.array(poses), at))
@@ -215,13 +221,33 @@ def asked_twists(
     model: Model, inputs: Inputs, begin: float | None = None, initial: Floats | None = None
 ) -> _core.InputHistory:
     """Inputs as twists; those of a car commanded by throttle and steering go through its curves."""
-    car, known = model.car, inputs.car
-    if car is None:
+    if model.car is None:
         return _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
-    throttle, steering = (inputs.v, inputs.omega) if known is None else (known.throttle, known.steering)
-    commands = _core.InputHistory(inputs.t, throttle, np.zeros_like(throttle), steering)
     measured = None if begin is None or initial is None else (begin, float(initial[0]))
-    return car.twists(commands, float(inputs.t[0]), measured)
+    return model.car.twists(_car_commands(inputs), float(inputs.t[0]), measured)
+
+
+def _car_commands(inputs: Inputs) -> _core.InputHistory:
+    """Throttle and steering, as the core takes them in place of speed and yaw rate."""
+    known = inputs.car
+    throttle, steering = (inputs.v, inputs.omega) if known is None else (known.throttle, known.steering)
+    return _core.InputHistory(inputs.t, throttle, np.zeros_like(throttle), steering)
+
+
+def _of_inputs(
+    model: Model,
+    asked: tuple[Inputs, float, Floats | None],
+    history: _core.InputHistory,
+    segment: _core.Segment,
+    times: Floats,
+) -> Sequence[Floats]:
+    """Covariances [3, 3] of the poses at `times` [s], of what a car never showed of its curves."""
+    if model.car is None:
+        return [np.zeros((3, 3)) for _ in times]
+    inputs, begin, initial = asked
+    measured = None if initial is None else (begin, float(initial[0]))
+    spread = model.car.spread(_car_commands(inputs), float(inputs.t[0]), measured)
+    return _core.input_covariances(model.motion, model.mean, history, spread, segment, times.tolist())
 
 
 def _measured_actuator(

@@ -34,6 +34,7 @@ OLD = {
     "baseline_heading": "plain_heading",
     "segments": "windows",
 }
+_OF_A_ROW = {"name", "unit", "value", "std", "prior_std", "identifiable"}
 PARAMETERS = (("time_constant", "lag"), ("slow_fraction", "slow_share"))
 MODELS = {
     "commands with limits": Made(
@@ -57,8 +58,27 @@ def as_it_was(value: object) -> object:
     return value
 
 
+def as_sections(model: Model) -> dict[str, object]:
+    """The content as schema 4 had it: limits and the curves of a car stand beside the parameters."""
+    content: dict[str, object] = yaml.safe_load(model.to_yaml())
+    vector = model.vector.content()
+    content["parameters"] = [row.model_dump(include=_OF_A_ROW) for row in vector["parameters"]]
+    content["covariance"] = vector["covariance"]
+    content.pop("limit_gains", None)
+    limits, car = model.limits_section, model.car
+    content["limits"] = None if limits is None else limits.model_dump()
+    if car is not None:
+        curves = {
+            name: {"at": list(curve.at), "value": list(curve.value), "std": list(curve.std)}
+            for name, curve in (("speed", car.speed), ("curvature", car.curvature))
+        }
+        single = ("lag", "steering_lag", "cornering_drag", "understeer")
+        content["car"] = curves | {name: getattr(car, name) for name in single}
+    return content
+
+
 def older(model: Model, version: int, path: Path) -> Path:
-    content = as_it_was(yaml.safe_load(model.to_yaml()))
+    content = as_sections(model) if version == 4 else as_it_was(as_sections(model))
     assert isinstance(content, dict)
     path.write_text(yaml.safe_dump(content | {"slipwise_model": version}), encoding="utf-8")
     return path

@@ -10,6 +10,9 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.models import Model, ModelFile
+from slipwise.models.car import car_rows
+from slipwise.models.limits import LimitsSection, limit_rows
+from slipwise.models.parameter_table import ParameterTable, stage_of
 
 SPEED = (-0.5, 1.5)
 YAW_RATE = (-1.2, 1.0)
@@ -35,6 +38,7 @@ class Made:
     delays: tuple[float, float] | None = None  # s, from commands without an actuator model
     clock_offset: float | None = None
     limits: Mapping[str, Mapping[str, float]] | None = None  # of the drive: kinds and values by axis
+    car: _core.CarCurves | None = None  # commands are throttle and steering
     sensor_extrinsics: tuple[float, float, float] | None = None  # of the pose sensor: x, y [m], yaw [rad]
     fraction: float = 0.05
     psd_motion: float = 1e-3
@@ -119,6 +123,7 @@ def make_model(made: Made) -> Model:
     parameters = [
         {
             "name": info.name,
+            "stage": stage_of(info.name),
             "unit": info.unit,
             "value": values.get(info.name, 0.0),
             "std": made.std,
@@ -128,7 +133,7 @@ def make_model(made: Made) -> Model:
         for info in motion.parameters
     ]
     content = {
-        "slipwise_model": 4,
+        "slipwise_model": 5,
         "input": "wheel" if not (made.commands or made.response or made.delays) else "command",
         "slip": {
             "basis": made.basis.name,
@@ -141,7 +146,6 @@ def make_model(made: Made) -> Model:
         "delays": made.delays is not None,
         "clock_offset": made.clock_offset is not None,
         "sensor_extrinsics": made.sensor_extrinsics is not None,
-        "limits": None if made.limits is None else _limits(made.limits),
         "parameters": parameters,
         "covariance": (made.std**2 * np.eye(len(names))).tolist(),
         "noise": {
@@ -171,4 +175,12 @@ def make_model(made: Made) -> Model:
         },
         "verdict": {"good": made.good, "sentence": made.sentence},
     }
-    return Model(ModelFile.model_validate(content))
+    file = ModelFile.model_validate(content)
+    table = ParameterTable(tuple(file.parameters), np.array(file.covariance).reshape((len(names),) * 2))
+    gains = None
+    if made.limits is not None:
+        rows, gains = limit_rows(LimitsSection.model_validate(_limits(made.limits))), [1.1, 0.9]
+        table = table.beside(rows, np.diag([row.std**2 for row in rows]))
+    if made.car is not None:
+        table = table.beside(*car_rows(made.car))
+    return Model(file.model_copy(update=table.content() | {"limit_gains": gains}))

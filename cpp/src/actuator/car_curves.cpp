@@ -3,18 +3,23 @@
 #include "slipwise/actuator/car_curves.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "slipwise/actuator/car_stages.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/linear/same_stamp.hpp"
+#include "slipwise/linear/symmetric_eigen.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kPiece = 0.05;    // [s] over which a twist is averaged
-constexpr double kLongest = 0.02;  // [s] of a step; over it the yaw rate in the drag is held
+constexpr double kPiece = 0.05;       // [s] over which a twist is averaged
+constexpr double kLongest = 0.02;     // [s] of a step; over it the yaw rate in the drag is held
+constexpr double kDeviation = 0.1;    // standard deviations, small enough for a derivative
+constexpr double kNegligible = 1e-4;  // of the largest variance, of a direction that is left away
 
 /// Twists averaged over pieces.
 class Pieces {
@@ -112,10 +117,143 @@ struct CarFunctions {
   double left(double drag) const { return lag_output(1.0, 0.0, car.lag / drag, duration); }
 };
 
+/// Where the first and the last of the knots are that are met between `low` and `high`.
+std::pair<Eigen::Index, Eigen::Index> knots_between(const KnotCurve& curve, double low, double high) {
+  const auto first = std::ranges::upper_bound(curve.at, low) - curve.at.begin();
+  const auto last = std::ranges::lower_bound(curve.at, high) - curve.at.begin();
+  return {std::max<Eigen::Index>(first - 1, 0), std::min<Eigen::Index>(last, std::ssize(curve.at) - 1)};
+}
+
+void set_numbers(CarCurves& car, const Eigen::VectorXd& numbers) {
+  const Eigen::Index speeds = std::ssize(car.speed.value), curvatures = std::ssize(car.curvature.value);
+  std::ranges::copy(numbers.head(speeds), car.speed.value.begin());
+  std::ranges::copy(numbers.segment(speeds, curvatures), car.curvature.value.begin());
+  car.lag = numbers[speeds + curvatures];
+  car.steering_lag = numbers[speeds + curvatures + 1];
+  car.cornering_drag = numbers[speeds + curvatures + 2];
+  car.understeer = numbers[speeds + curvatures + 3];
+}
+
+/// Precision of the prior of a curve's values at `at`, and of a number after them, from their standard deviations:
+/// increments from knot to knot are independent, going away from zero. Empty where the prior is not stated.
+Eigen::MatrixXd prior_precision(const std::vector<double>& at, const Eigen::VectorXd& prior) {
+  const Eigen::Index knots = std::ssize(at);
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(knots + 1, knots + 1);
+  const auto add = [&precision](Eigen::Index far, Eigen::Index near, double variance) {
+    precision(far, far) += 1.0 / variance;
+    if (near >= 0) {
+      precision(near, near) += 1.0 / variance;
+      precision(far, near) -= 1.0 / variance;
+      precision(near, far) -= 1.0 / variance;
+    }
+  };
+  for (Eigen::Index k = 0; k < knots; ++k) {
+    const double x = at[static_cast<std::size_t>(k)];
+    Eigen::Index near = x > 0.0 ? k - 1 : k + 1;
+    if (x == 0.0 || near < 0 || near == knots || at[static_cast<std::size_t>(near)] * x < 0.0) {
+      near = -1;
+    }
+    const double variance = prior[k] * prior[k] - (near >= 0 ? prior[near] * prior[near] : 0.0);
+    if (variance > 0.0) {
+      add(k, near, variance);
+    } else if (x != 0.0) {  // at zero, a value may be given
+      return {};
+    }
+  }
+  if (!(prior[knots] > 0.0)) {
+    return {};
+  }
+  add(knots, -1, prior[knots] * prior[knots]);
+  return precision;
+}
+
+/// What of the covariance is the prior's: large where the car never drove, and small against what the noise of the
+/// measurements leaves where it did.
+Eigen::MatrixXd unknown_covariance(const CarCurves& car) {
+  const Eigen::MatrixXd& covariance = car.spread->covariance;
+  const Eigen::VectorXd& prior = car.spread->prior_std;
+  const Eigen::Index speeds = std::ssize(car.speed.at), curvatures = std::ssize(car.curvature.at);
+  const Eigen::Index single = speeds + curvatures;
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols());
+  const auto put = [&](const KnotCurve& curve, Eigen::Index first, Eigen::Index last) {
+    const Eigen::Index size = std::ssize(curve.at);
+    Eigen::VectorXd own(size + 1);
+    own << prior.segment(first, size), prior[last];
+    const Eigen::MatrixXd found = prior_precision(curve.at, own);
+    if (found.size() > 0) {
+      precision.block(first, first, size, size) = found.topLeftCorner(size, size);
+      precision(last, last) = found(size, size);
+    }
+  };
+  put(car.speed, 0, single + 2);
+  put(car.curvature, speeds, single + 3);
+  for (const Eigen::Index lag : {single, single + 1}) {
+    precision(lag, lag) = prior[lag] > 0.0 ? 1.0 / (prior[lag] * prior[lag]) : 0.0;
+  }
+  return covariance * precision * covariance;
+}
+
 /// [s] after which a car has forgotten its earlier commands.
 double settling(const CarCurves& car) { return 10.0 * std::max(car.lag, car.steering_lag) + 1.0; }
 
 }  // namespace
+
+Eigen::VectorXd car_numbers(const CarCurves& car) {
+  const Eigen::Index speeds = std::ssize(car.speed.value), curvatures = std::ssize(car.curvature.value);
+  Eigen::VectorXd numbers(speeds + curvatures + 4);
+  std::ranges::copy(car.speed.value, numbers.begin());
+  std::ranges::copy(car.curvature.value, numbers.begin() + speeds);
+  numbers.tail<4>() << car.lag, car.steering_lag, car.cornering_drag, car.understeer;
+  return numbers;
+}
+
+CarDeviations car_deviations(const CarCurves& car, const InputHistory& commands) {
+  CarDeviations found{.cars = {}, .step = kDeviation};
+  if (car.spread == nullptr) {
+    return found;
+  }
+  BodyTwist low{}, high{};
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const BodyTwist command = commands.sample(i);
+    low = {.v = std::min(low.v, command.v), .vy = 0.0, .omega = std::min(low.omega, command.omega)};
+    high = {.v = std::max(high.v, command.v), .vy = 0.0, .omega = std::max(high.omega, command.omega)};
+  }
+  const Eigen::VectorXd mean = car_numbers(car);
+  const Eigen::MatrixXd unknown = unknown_covariance(car);
+  const Eigen::Index speeds = std::ssize(car.speed.value), single = mean.size() - 4;
+  const auto [first_speed, last_speed] = knots_between(car.speed, low.v, high.v);
+  const auto [first_turn, last_turn] = knots_between(car.curvature, low.omega, high.omega);
+  std::array<std::vector<Eigen::Index>, 4> blocks{{{single + 2}, {single + 3}, {single}, {single + 1}}};
+  for (Eigen::Index k = first_speed; k <= last_speed; ++k) {
+    blocks[0].push_back(k);
+  }
+  for (Eigen::Index k = first_turn; k <= last_turn; ++k) {
+    blocks[1].push_back(speeds + k);
+  }
+  for (const std::vector<Eigen::Index>& block : blocks) {
+    const Eigen::Index size = std::ssize(block);
+    Eigen::MatrixXd covariance(size, size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      for (Eigen::Index k = 0; k < size; ++k) {
+        covariance(i, k) = unknown(block[static_cast<std::size_t>(i)], block[static_cast<std::size_t>(k)]);
+      }
+    }
+    const SymmetricEigen directions = symmetric_eigen(covariance);
+    const double least = std::max(kNegligible * directions.values[size - 1], 0.0);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      if (directions.values[i] > least) {
+        Eigen::VectorXd numbers = mean;
+        for (Eigen::Index k = 0; k < size; ++k) {
+          numbers[block[static_cast<std::size_t>(k)]] +=
+              kDeviation * std::sqrt(directions.values[i]) * directions.vectors(k, i);
+        }
+        numbers.segment<2>(single) = numbers.segment<2>(single).cwiseMax(0.0);
+        set_numbers(found.cars.emplace_back(car), numbers);
+      }
+    }
+  }
+  return found;
+}
 
 double settled_after(const CarCurves& car, const InputHistory& commands, double start) {
   const double last = commands.size() > 0 ? commands.time(commands.size() - 1) : start;

@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 #include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/identify/lag_variance.hpp"
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/nonnegative.hpp"
 #include "slipwise/linear/tuning.hpp"
@@ -53,26 +55,38 @@ Eigen::VectorXd ramps(const std::array<double, N>& knots, double x) {
   return up;
 }
 
-/// The curve whose increments over the ramps are `rise`, `offset` at zero.
+/// Knots on both sides of zero, in order.
 template <std::size_t N>
-KnotCurve curve_of(const std::array<double, N>& knots, const Eigen::VectorXd& weights,
-                   const Eigen::MatrixXd& covariance, bool offset) {
-  KnotCurve curve;
-  const Eigen::Index ramp_count = 2 * (static_cast<Eigen::Index>(N) - 1);
-  const Eigen::Index first = offset ? 1 : 0;
-  const auto add = [&](double x) {
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(first + ramp_count);
-    row.tail(ramp_count) = ramps(knots, x);
-    row.head(first).setOnes();
-    curve.at.push_back(x);
-    curve.value.push_back(row.dot(weights.head(row.size())));
-    curve.std.push_back(std::sqrt(std::max(row.dot(covariance.topLeftCorner(row.size(), row.size()) * row), 0.0)));
-  };
+std::vector<double> both_sides(const std::array<double, N>& knots) {
+  std::vector<double> at;
   for (std::size_t i = N - 1; i > 0; --i) {
-    add(-knots[i]);
+    at.push_back(-knots[i]);
   }
-  for (const double knot : knots) {
-    add(knot);
+  at.insert(at.end(), knots.begin(), knots.end());
+  return at;
+}
+
+/// How values of a curve at all its knots follow from weights: an offset at zero, where there is one, and increments
+/// over the ramps. The last weight is no part of the curve: it is handed on as it is.
+template <std::size_t N>
+Eigen::MatrixXd values_by_weights(const std::array<double, N>& knots, bool offset) {
+  const std::vector<double> at = both_sides(knots);
+  const Eigen::Index count = std::ssize(at), first = offset ? 1 : 0;
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(count + 1, first + count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    rows.row(k).head(first).setOnes();
+    rows.row(k).segment(first, count - 1) = ramps(knots, at[static_cast<std::size_t>(k)]).transpose();
+  }
+  rows(count, first + count - 1) = 1.0;
+  return rows;
+}
+
+/// A curve from its values at the knots, and a number after them that it does not take.
+KnotCurve curve_of(std::vector<double> at, const Eigen::VectorXd& values, const Eigen::MatrixXd& covariance) {
+  KnotCurve curve{.at = std::move(at), .value = {}, .std = {}};
+  for (Eigen::Index k = 0; k < std::ssize(curve.at); ++k) {
+    curve.value.push_back(values[k]);
+    curve.std.push_back(std::sqrt(std::max(covariance(k, k), 0.0)));
   }
   return curve;
 }
@@ -167,6 +181,14 @@ void CurveBank::solve() {
 
 std::size_t CurveBank::best() const {
   return static_cast<std::size_t>(std::ranges::min_element(squares_) - squares_.begin());
+}
+
+Eigen::VectorXd CurveBank::log_likelihoods() const {
+  Eigen::VectorXd logarithm(std::ssize(squares_));
+  for (std::size_t k = 0; k < squares_.size(); ++k) {
+    logarithm[static_cast<Eigen::Index>(k)] = -0.5 * kAlike * examples_ * std::log(variance(k));
+  }
+  return logarithm;
 }
 
 Eigen::MatrixXd CurveBank::covariance() const {
@@ -315,13 +337,47 @@ void CarCurveFilter::learn(const Means& means, const BodyTwist& twist) {
 void CarCurveFilter::set_curves() {
   speed_.solve();
   turn_.solve();
-  const Eigen::MatrixXd of_turn = turn_.covariance();
-  curves_ = {.speed = curve_of(kThrottle, speed_.weights(), speed_.covariance(), false),
-             .curvature = curve_of(kSteering, turn_.weights(), of_turn, true),
-             .lag = kLags[speed_.best()],
-             .steering_lag = kSteeringLags[turn_.best()],
-             .cornering_drag = speed_.weights()[kThrottleRamps],
-             .understeer = turn_.weights()[kSteeringRamps + 1]};
+  static const Eigen::MatrixXd by_speed = values_by_weights(kThrottle, false);
+  static const Eigen::MatrixXd by_turn = values_by_weights(kSteering, true);
+  const Eigen::VectorXd speed = by_speed * speed_.weights(), turn = by_turn * turn_.weights();
+  const auto spread = std::make_shared<const CarSpread>(car_spread(by_speed, by_turn));
+  const Eigen::Index speeds = speed.size() - 1, curvatures = turn.size() - 1;
+  const Eigen::MatrixXd& covariance = spread->covariance;
+  curves_ = {
+      .speed = curve_of(both_sides(kThrottle), speed, covariance.topLeftCorner(speeds, speeds)),
+      .curvature = curve_of(both_sides(kSteering), turn, covariance.block(speeds, speeds, curvatures, curvatures)),
+      .lag = kLags[speed_.best()],
+      .steering_lag = kSteeringLags[turn_.best()],
+      .cornering_drag = speed[speeds],
+      .understeer = turn[curvatures],
+      .spread = spread};
+}
+
+/// What speeds and turns tell is independent of each other, and of the lags.
+CarSpread CarCurveFilter::car_spread(const Eigen::MatrixXd& by_speed, const Eigen::MatrixXd& by_turn) const {
+  const Eigen::Index speeds = by_speed.rows() - 1, curvatures = by_turn.rows() - 1, single = speeds + curvatures;
+  CarSpread spread{.covariance = Eigen::MatrixXd::Zero(single + 4, single + 4),
+                   .prior_std = Eigen::VectorXd::Zero(single + 4)};
+  const auto put = [&spread](const Eigen::MatrixXd& by_weights, const CurveBank& bank, Eigen::Index first,
+                             Eigen::Index last) {  // of a curve's values from `first` on, and the number at `last`
+    const Eigen::Index size = by_weights.rows() - 1;
+    const Eigen::MatrixXd found = by_weights * bank.covariance() * by_weights.transpose();
+    spread.covariance.block(first, first, size, size) = found.topLeftCorner(size, size);
+    spread.covariance.block(first, last, size, 1) = found.topRightCorner(size, 1);
+    spread.covariance.block(last, first, 1, size) = found.bottomLeftCorner(1, size);
+    spread.covariance(last, last) = found(size, size);
+    const Eigen::VectorXd prior =
+        (by_weights * bank.prior_covariance() * by_weights.transpose()).diagonal().cwiseSqrt();
+    spread.prior_std.segment(first, size) = prior.head(size);
+    spread.prior_std[last] = prior[size];
+  };
+  put(by_speed, speed_, 0, single + 2);
+  put(by_turn, turn_, speeds, single + 3);
+  spread.covariance(single, single) = lag_variance(kLags, speed_.log_likelihoods(), speed_.best());
+  spread.covariance(single + 1, single + 1) = lag_variance(kSteeringLags, turn_.log_likelihoods(), turn_.best());
+  spread.prior_std[single] = std::sqrt(prior_lag_variance(kLags));
+  spread.prior_std[single + 1] = std::sqrt(prior_lag_variance(kSteeringLags));
+  return spread;
 }
 
 CarCurves CarCurveFilter::straight() const {

@@ -67,6 +67,11 @@ DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<Inp
   return {.inputs = std::move(driving), .segment = std::move(segment), .known_at = newest_};
 }
 
+InputSpread SegmentStream::spread_ahead(double horizon, const std::vector<InputSample>& future) const {
+  const double end = newest_ + horizon;
+  return car_ && settings_.from_commands ? car_->spread(newest_, end, newest_, repeated(future, end)) : InputSpread{};
+}
+
 DrivenSegment SegmentStream::stretch(double start, double end, double back) const {
   Segment segment{.start = start, .end = end, .sensor = settings_.sensor, .heading = heading_};
   stand_on_ground(segment, false);

@@ -118,19 +118,32 @@ void CarStream::drop_before(double t) {
 }
 
 InputHistory CarStream::inputs(double start, double end, double known, const std::vector<InputSample>& future) const {
+  return twists(car_at(known), given_.slice(start - kLookBack, end, SliceKind::Commands, future), start, end);
+}
+
+InputSpread CarStream::spread(double start, double end, double known, const std::vector<InputSample>& future) const {
+  const InputHistory commands = given_.slice(start - kLookBack, end, SliceKind::Commands, future);
+  const CarDeviations deviations = car_deviations(car_at(known), commands);
+  InputSpread found{.deviated = {}, .step = deviations.step};
+  for (const CarCurves& car : deviations.cars) {
+    found.deviated.push_back(twists(car, commands, start, end));
+  }
+  return found;
+}
+
+InputHistory CarStream::twists(const CarCurves& car, const InputHistory& commands, double start, double end) const {
   CarSpan span{.start = start - kBefore, .end = end};
   for (const KnownMotion& motion : motions_) {
     if (!later(motion.t, start)) {
       span.measured = motion;
     }
   }
-  const InputHistory commands = given_.slice(start - kLookBack, end, SliceKind::Commands, future);
-  const InputHistory twists = car_twists(follower_ ? follower_->curves() : known_at(known).curves, commands, span);
+  const InputHistory driven = car_twists(car, commands, span);
   std::vector<double> t;
   std::vector<BodyTwist> twist;
-  for (std::size_t i = 0; i < twists.size(); ++i) {
-    t.push_back(i == 0 ? twists.time(0) - kLongAgo : twists.time(i));
-    twist.push_back(twists.sample(i));
+  for (std::size_t i = 0; i < driven.size(); ++i) {
+    t.push_back(i == 0 ? driven.time(0) - kLongAgo : driven.time(i));
+    twist.push_back(driven.sample(i));
   }
   return {std::move(t), std::move(twist)};
 }

@@ -123,7 +123,9 @@ void SegmentStream::emit_targets(std::size_t horizon, const std::vector<SegmentC
       const double length = settings_.horizons[horizon];
       TargetSegment target{horizon, driven(cut, !settings_.from_commands, now_, length)};
       if (car_ && settings_.from_commands) {
-        target.baseline = car_->baseline(cut.first.t, cut.second.t, cut.first.t - std::max(length, kReady));
+        const double known = cut.first.t - std::max(length, kReady);
+        target.baseline = car_->baseline(cut.first.t, cut.second.t, known);
+        target.spread = car_->spread(path_start(target.driven.segment), cut.second.t, known);
       }
       target.classes = classes_of(cut);
       items_.emplace_back(std::move(target));

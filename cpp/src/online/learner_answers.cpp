@@ -15,6 +15,7 @@
 #include "slipwise/online/pose_limits.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
 #include "slipwise/online/student_t.hpp"
+#include "slipwise/segment/input_spread.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
@@ -125,10 +126,12 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
                          [](const SegmentLinearization& part) { return part.path.times.back(); });
   path.t.back() = ahead.segment.end;
   const auto along = known.disturbance->predict_along(motion, slip, beginnings, ahead.segment);
+  const auto of_inputs =
+      input_covariances(motion.model, motion.estimate.mean, ahead, stream_.spread_ahead(horizon, inputs), path.t);
   for (std::size_t i = 0; i < along.size(); ++i) {
     path.students.push_back(student_for(path.t[i] - path.start, known.motion->structure));
     path.poses.push_back(along[i].pose);
-    path.covariances.emplace_back(path.students.back().inflation * along[i].covariance);
+    path.covariances.emplace_back(path.students.back().inflation * along[i].covariance + of_inputs[i]);
   }
   path.start = clock_.stamp(path.start);
   std::ranges::for_each(path.t, [this](double& t) { t = clock_.stamp(t); });

@@ -43,6 +43,13 @@ void CarStream::check_loaded(const CarStream& made) const {
   given_.check_loaded(made.given_);
   filter_.check_loaded(made.filter_);
   require(!known_.empty(), "nothing is known of the car");
+  for (const KnownCurves& known : known_) {
+    const Eigen::Index size = car_numbers(known.curves).size();
+    const CarSpread* spread = known.curves.spread.get();
+    require(spread == nullptr || (spread->covariance.rows() == size && spread->covariance.cols() == size &&
+                                  spread->prior_std.size() == size && spread->covariance.allFinite()),
+            "the covariance of the car is not that of its numbers");
+  }
 }
 
 void WindowCutter::check_loaded() const {

@@ -17,6 +17,7 @@
 #include "slipwise/online/sample_gate.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
 #include "slipwise/online/student_t.hpp"
+#include "slipwise/segment/input_spread.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
 
@@ -334,13 +335,17 @@ void MotionLearner::judge(const TargetSegment& target) {
   const Segment& segment = driven.segment;
   const SegmentList recent = recent_before(segment.start);
   const SlipNow& slip = recent_slip_.after(*known.disturbance, known.motion, recent);
-  const auto [expected, nominal] = known.disturbance->predict_both(*aged(known, segment), slip, driven);
+  auto [expected, nominal] = known.disturbance->predict_both(*aged(known, segment), slip, driven);
   const Eigen::Vector3d measured = segment.measured.vector();
   const Structure structure = known.motion->structure;
   HorizonErrors& errors = errors_[target.horizon];
   const HorizonErrors::Known earlier = errors.before(segment.start - std::max(horizon, kReady));
   const StudentT student = earlier.students[index(structure)];
   const double directions = settings_.stream.heading_only ? 3.0 : 1.0;  // one is measured in place of three
+  const Eigen::Matrix3d of_inputs =
+      input_covariance(known.motion->model, known.motion->estimate.mean, driven, target.spread);
+  expected.covariance += of_inputs / student.inflation;  // which does not grow them: they are of no errors so far
+  nominal.covariance += of_inputs / student.inflation;
   const double squared = directions * normalised_square(chart_error(measured, expected.pose), expected.covariance);
   const double nominal_squared =
       directions * normalised_square(chart_error(measured, nominal.pose), nominal.covariance);

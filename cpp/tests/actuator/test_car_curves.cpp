@@ -4,7 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Core>
 #include <cmath>
+#include <memory>
 
 namespace slipwise {
 namespace {
@@ -29,6 +31,37 @@ TEST_CASE("a curve is straight between its knots and level beyond them") {
   CHECK(curve(2.0) == doctest::Approx(1.0));
   CHECK(curve(9.0) == 0.0);
   CHECK(KnotCurve{}(1.0) == 0.0);
+}
+
+TEST_CASE("deviations make up the prior's part of the covariance of the numbers that the commands touch") {
+  CarCurves car = sample_car();
+  const Eigen::Index size = car_numbers(car).size();
+  Eigen::VectorXd prior(size);
+  prior << 2.0, 0.0, 1.0, 3.0, 1.0, 1.0, 0.5, 0.2, 0.3, 0.2;  // speed at -1, 0, 0.2 and 1, curvature at -1 and 1
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  covariance.diagonal() << 4.0, 0.0, 0.01, 8.01, 1.0, 1.0, 0.25, 0.04, 0.09, 0.04;
+  covariance(2, 3) = covariance(3, 2) = 0.01;  // the first increment is known to 0.1, the second not at all
+  car.spread = std::make_shared<const CarSpread>(CarSpread{covariance, prior});
+  const auto sum_under = [&car](double throttle) {
+    const CarDeviations deviations = car_deviations(car, held(throttle, 0.5));
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(car_numbers(car).size(), car_numbers(car).size());
+    for (const CarCurves& each : deviations.cars) {
+      const Eigen::VectorXd off = (car_numbers(each) - car_numbers(car)) / deviations.step;
+      sum += off * off.transpose();
+    }
+    return sum;
+  };
+  const Eigen::MatrixXd slow = sum_under(0.1), fast = sum_under(0.9);
+  CHECK(slow(2, 2) == doctest::Approx(1e-4));  // of 0.01, what a prior of 1 leaves
+  CHECK(slow(3, 3) == 0.0);                    // not touched
+  CHECK(fast(3, 3) == doctest::Approx(8.0 + 1e-4).epsilon(1e-3));
+  for (const Eigen::Index never : {4, 5, 6, 7, 8, 9}) {  // as before any drive
+    CHECK(fast(never, never) == doctest::Approx(covariance(never, never)));
+  }
+  CHECK(car_deviations(sample_car(), held(0.1, 0.5)).cars.empty());
+  Eigen::VectorXd unstated = Eigen::VectorXd::Zero(size);
+  car.spread = std::make_shared<const CarSpread>(CarSpread{covariance, unstated});
+  CHECK(car_deviations(car, held(0.9, 0.5)).cars.empty());
 }
 
 TEST_CASE("a throttle within the dead zone moves nothing") {

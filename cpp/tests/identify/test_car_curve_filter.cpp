@@ -71,6 +71,26 @@ CarCurveFilter learned(const Drive& drive, std::size_t count) {
   return filter;
 }
 
+TEST_CASE("a curve is sure where the car drove and as its prior where it did not; a lag is as its spacing") {
+  const CarCurves found = learned(random_drive(true_car(), 240.0, 0.02, 7), 10000).curves();
+  REQUIRE(found.spread != nullptr);
+  const Eigen::VectorXd std = found.spread->covariance.diagonal().cwiseSqrt();
+  const Eigen::Index speeds = std::ssize(found.speed.at), last = speeds - 1, single = std.size() - 4;
+  CHECK(std[last] > 0.5 * found.spread->prior_std[last]);
+  CHECK(std[last] == doctest::Approx(found.speed.std.back()));
+  for (Eigen::Index k = 0; k < speeds; ++k) {
+    const double throttle = found.speed.at[static_cast<std::size_t>(k)];
+    if (throttle > 0.0 && throttle < 0.55) {
+      CHECK(std[k] < 0.1);
+    }
+  }
+  CHECK(std[single] > 0.03);
+  CHECK(std[single] < 0.2);
+  CHECK(std::abs(found.lag - 0.4) < 3.0 * std[single]);
+  CHECK(std::abs(found.cornering_drag - 0.15) < 4.0 * std[single + 2]);
+  CHECK(std::abs(found.understeer - 0.08) < 4.0 * std[single + 3]);
+}
+
 TEST_CASE("the curves of a car with a dead zone are found where it drove") {
   const CarCurves car = true_car();
   const CarCurves found = learned(random_drive(car, 240.0, 0.02, 7), 10000).curves();

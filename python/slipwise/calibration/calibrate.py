@@ -285,8 +285,12 @@ def _facts(
 
 
 def _range(drive: tuple[PreparedRun, ...]) -> schema.Range:
-    speed = np.concatenate([run.inputs.v for run in drive])
-    yaw_rate = np.concatenate([run.inputs.omega for run in drive])
+    cars = [run.inputs.car for run in drive]  # their throttle and steering stand for speed and yaw rate here
+    given = [
+        (run.inputs.v, run.inputs.omega) if car is None else (car.throttle, car.steering)
+        for run, car in zip(drive, cars, strict=True)
+    ]
+    speed, yaw_rate = (np.concatenate(axis) for axis in zip(*given, strict=True))
     sideways = np.concatenate([run.inputs.vy for run in drive])
     tilts = [t for run in drive for t in (run.run.poses.roll, run.run.poses.pitch) if t is not None]
     steepest = float(np.nanmax(np.abs(np.concatenate(tilts)))) if tilts else 0.0

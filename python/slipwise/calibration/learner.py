@@ -32,6 +32,7 @@ class Posterior:
     noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its predictor
     disturbance: _core.DisturbanceFilter | None = None  # of slip about this, where that is learned
     limits: _core.CommandLimits | None = None  # in front of the actuator, where some were found
+    car: _core.CarCurves | None = None  # whose curves made the inputs, where they leave something open
     structure: int = JOINT  # of STRUCTURES; the errors of each are a population of their own
 
     def for_core(self, noise: _core.MotionNoise) -> _core.MotionPosterior:

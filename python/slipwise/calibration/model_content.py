@@ -15,8 +15,10 @@ from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.settings import Settings
 from slipwise.models import schema
-from slipwise.models.car import car_section
-from slipwise.models.limits import limits_section
+from slipwise.models.body_force import force_names
+from slipwise.models.car import car_rows
+from slipwise.models.limits import limit_rows, limits_section
+from slipwise.models.parameter_table import ParameterTable, stage_of
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
     """Return what a model file holds of what was learned and judged."""
     motion, verdict = learned.kept.motion, judged.verdict
     basis = motion.basis
+    table, gains = _table(learned, facts.settings)
     return schema.ModelFile(
         slipwise_model=schema.SCHEMA_VERSION,
         input="command" if facts.input_name == "command" else "wheel",
@@ -44,14 +47,12 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         clock_offset=motion.clock_offset,
         response=motion.response,
         sensor_extrinsics=motion.sensor_extrinsics,
-        car=None if learned.car is None else car_section(learned.car),
-        limits=_limits(learned),
-        parameters=_parameters(learned.kept),
-        covariance=learned.kept.covariance.tolist(),
+        limit_gains=gains,
+        **table.content(),
         noise=_noise(learned, facts.settings),
         slip_disturbance=_slip_disturbance(learned.kept, facts.settings.segment_length(facts.input_name)),
         body_force=_body_force(motion, facts.settings),
-        range=facts.range.model_copy(update={"body": learned.body}),
+        range=_range(facts.range, learned),
         weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
         provenance=schema.Provenance(
             slipwise_version=_version(),
@@ -78,24 +79,57 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
     )
 
 
-def _limits(learned: Learned) -> schema.LimitsSection | None:
-    """Limits that a search found, where they are kept."""
-    return None if learned.kept.limits is None or learned.limits is None else limits_section(learned.limits)
+def _table(learned: Learned, settings: Settings) -> tuple[ParameterTable, list[float] | None]:
+    """All that was learned as one table, and the gains behind the drive's limits, where some are kept.
 
-
-def _parameters(posterior: Posterior) -> list[schema.Parameter]:
-    stds = np.sqrt(np.diag(posterior.covariance))
-    return [
+    Slip and actuator are learned together; limits and the curves of a car each apart from them.
+    """
+    kept, frame = learned.kept, settings.body_force.frame
+    force = () if frame == "none" else force_names(frame)
+    stds = np.sqrt(np.diag(kept.covariance))
+    rows = tuple(
         schema.Parameter(
             name=info.name,
+            stage=stage_of(info.name, force),
             unit=info.unit,
-            value=float(posterior.mean[i]),
+            value=float(kept.mean[i]),
             std=float(stds[i]),
-            prior_std=float(posterior.prior_std[i]),
-            identifiable=bool(posterior.variance_ratio[i] <= schema.UNIDENTIFIABLE_RATIO),
+            prior_std=float(kept.prior_std[i]),
+            identifiable=bool(kept.variance_ratio[i] <= schema.UNIDENTIFIABLE_RATIO),
         )
-        for i, info in enumerate(posterior.motion.parameters)
+        for i, info in enumerate(kept.motion.parameters)
+    )
+    table = ParameterTable(rows, kept.covariance)
+    if learned.car is not None:
+        table = table.beside(*car_rows(learned.car))
+    if kept.limits is None or learned.limits is None:
+        return table, None
+    section = limits_section(learned.limits)
+    found = limit_rows(section)
+    table = table.beside(found, np.diag([row.std**2 for row in found]))
+    return table, [section.gain_v, section.gain_omega]
+
+
+def _range(inputs: schema.Range, learned: Learned) -> schema.Range:
+    """What the robot did: a car's commands are throttle and steering, and its curves make speeds of them."""
+    car, body = learned.car, learned.body
+    if car is None:
+        return inputs.model_copy(update={"body": body})
+    speed = [float(np.interp(end, car.speed.at, car.speed.value)) for end in inputs.speed]
+    fastest = max(map(abs, speed))
+    tightest = [
+        fastest * float(np.interp(end, car.curvature.at, car.curvature.value)) for end in inputs.yaw_rate
     ]
+    seen = body is not None and any(body.yaw_rate)
+    return inputs.model_copy(
+        update={
+            "speed": speed,
+            "yaw_rate": body.yaw_rate if body is not None and seen else tightest,
+            "throttle": inputs.speed,
+            "steering": inputs.yaw_rate,
+            "body": body,
+        }
+    )
 
 
 def _noise(learned: Learned, settings: Settings) -> schema.Noise:

@@ -46,6 +46,7 @@ def model_predictor(model: Model) -> Predictor:
         np.ones(1),
         disturbance=_core.DisturbanceFilter(model.disturbance),
         limits=model.limits,
+        car=model.car,
     )
     return Predictor("model", model.noise, lambda _: posterior, model.content.dynamics)
 

@@ -14,9 +14,12 @@ from slipwise.calibration.learner import Posterior
 from slipwise.calibration.predictions import Predictions, normalised_squared, residual
 from slipwise.calibration.prepared_run import WindowSet
 from slipwise.models.schema import StudentT
+from slipwise.segments import input_rows
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+_BEFORE = 20.0  # s of commands before a window; a car remembers no more
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +95,27 @@ def _predict(predictor: Predictor, posterior: Posterior, draft: _Draft, i: int) 
     disturbance = posterior.disturbance or _core.DisturbanceFilter(_core.DisturbanceModel([], np.empty(0)))
     history, segment = draft.targets.input_history(i, posterior.limits), draft.targets.segments[i].foreseen()
     expected = disturbance.predict(known, history, disturbance.now(known, history, []), segment)
-    draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
+    draft.pose[i] = expected.pose
+    draft.covariance[i] = expected.covariance + _of_curves(posterior, draft.targets, i)
     draft.structure[i] = posterior.structure
+
+
+def _of_curves(posterior: Posterior, targets: WindowSet, i: int) -> Floats:
+    """Covariance of the pose of window i, of what a car never showed of its curves, [3, 3]."""
+    car, segment = posterior.car, targets.segments[i].foreseen()
+    rows = input_rows(targets.drive[targets.position[i]].run.commands)
+    if car is None or not len(rows):
+        return np.zeros((3, 3))
+    given = rows[
+        np.searchsorted(rows[:, 0], segment.start - _BEFORE) : np.searchsorted(rows[:, 0], segment.end)
+    ]
+    driven = targets.histories[i].rows()
+    at_start = driven[max(int(np.searchsorted(driven[:, 0], segment.start, side="right")) - 1, 0)]
+    commands = _core.InputHistory(*(np.ascontiguousarray(column) for column in given.T))
+    begin, measured = float(given[0, 0]), (segment.start, float(at_start[1]))
+    twists, spread = car.twists(commands, begin, measured), car.spread(commands, begin, measured)
+    end = [segment.end]
+    return _core.input_covariances(posterior.motion, posterior.mean, twists, spread, segment, end)[0]
 
 
 def _predict_in_sample(posterior: Posterior, draft: _Draft, i: int) -> None:

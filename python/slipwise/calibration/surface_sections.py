@@ -115,9 +115,12 @@ def with_memory(
 
 
 def _wider(a: Range, b: Range) -> Range:
+    spans = {}
+    for name in ("speed", "yaw_rate", "throttle", "steering"):
+        one, other = getattr(a, name), getattr(b, name)
+        spans[name] = one and other and [min(one[0], other[0]), max(one[1], other[1])]
     return Range(
-        speed=[min(a.speed[0], b.speed[0]), max(a.speed[1], b.speed[1])],
-        yaw_rate=[min(a.yaw_rate[0], b.yaw_rate[0]), max(a.yaw_rate[1], b.yaw_rate[1])],
+        **spans,
         sideways=_wider_span(a.sideways, b.sideways),
         slope=max(a.slope, b.slope),
         wheel_step=max(a.wheel_step, b.wheel_step),
@@ -205,7 +208,7 @@ def begin_with(learner: _core.MotionLearner, model: Model, input_name: str, *, w
 def structure_of(model: Model) -> int:
     """Return how a model explains motion, of `learner.STRUCTURES`."""
     content = model.content
-    if content.limits is not None:
+    if content.limit_gains is not None:
         return LIMITS
     if content.response:
         return CASCADED

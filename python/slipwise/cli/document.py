@@ -61,13 +61,14 @@ def calibration_part(calibration: Calibration) -> dict[str, Any]:
     from slipwise.models.summary import summarise
 
     content, history = calibration.model.content, calibration.history
+    limits = calibration.model.limits_section
     alarms = [] if history is None else history.alarms()
     return {
         "input": content.input,
         "basis": content.slip.basis,
         "summary": list(summarise(calibration.model).sentences),
         "parameters": [parameter.model_dump() for parameter in content.parameters],
-        "limits": content.limits.model_dump() if content.limits else None,
+        "limits": None if limits is None else limits.model_dump(),
         "held_out": content.verdict.held_out.model_dump() if content.verdict.held_out else None,
         "learned_segments": content.provenance.learned_segments,
         "learned_seconds": content.provenance.learned_seconds,

@@ -53,14 +53,15 @@ def _identified(source: Calibration | Model) -> Identified:
     from slipwise.calibration.verdict import Identified
 
     calibrated = isinstance(source, Calibration)
-    content = source.model.content if isinstance(source, Calibration) else source.content
+    model = source.model if isinstance(source, Calibration) else source
+    content, vector = model.content, model.vector
     return Identified(
-        len(content.parameters),
+        len(vector.rows),
         tuple(content.verdict.not_identifiable),
         tuple(content.verdict.advice),
         timing=content.verdict.timing,
         force=content.verdict.force,
-        delay=longest_delay(tuple(p.name for p in content.parameters), [p.value for p in content.parameters]),
+        delay=longest_delay(vector.names, vector.values.tolist()),
         from_log="this log" if calibrated else "the log of the model",
     )
 

@@ -132,7 +132,7 @@ def _known(
     space = CommandSpace(**limits)
     if prior is not None:
         return space, new_robot_knowledge(KnownFleet.load(prior))
-    if learned is None or not learned.content.parameters:  # the baseline predicts best
+    if learned is None or not learned.vector.rows:  # the baseline predicts best
         return space, prior_knowledge(space)
     return space, knowledge_of(learned)
 

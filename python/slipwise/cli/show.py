@@ -52,10 +52,16 @@ def _origin(model: Model) -> tuple[str, ...]:
     origin, span = model.content.provenance, model.content.range
     speed, yaw_rate = (" to ".join(number_text(end) for end in ends) for ends in (span.speed, span.yaw_rate))
     amount = f"{origin.learned_segments} segments, {origin.learned_seconds:.0f} s of driving"
+    commands = [
+        f"{name} {number_text(ends[0])} to {number_text(ends[1])}"
+        for name in ("throttle", "steering")
+        if (ends := getattr(span, name)) is not None
+    ]
+    driven = f" ({', '.join(commands)})" if commands else ""
     return (
         f"Learned by slipwise {origin.slipwise_version} from {amount}:",
         *(f"  {log.path}" for log in origin.logs),
-        f"Holds from {speed} m/s and from {yaw_rate} rad/s, as far as the log went.",
+        f"Holds from {speed} m/s and from {yaw_rate} rad/s{driven}, as far as the log went.",
     )
 
 

@@ -72,7 +72,7 @@ def actuator_of(model: Model) -> Actuator:
     Raises:
         ModelError: the actuator has a part that the exporters do not know, and would leave out.
     """
-    parameters = model.body.content.parameters
+    parameters = model.body.vector.rows
     places = {p.name: i for i, p in enumerate(parameters) if i >= model.motion.slip_size}
     unknown = sorted(set(places) - _KNOWN)
     if unknown:

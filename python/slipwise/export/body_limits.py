@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.models.body_gains import BodyTwists, straight_line
-from slipwise.models.schema import LearnedLimit, LimitsSection
+from slipwise.models.limits import LearnedLimit, LimitsSection
 
 Gains = tuple[LearnedNumber, LearnedNumber]  # of the body over the input, speed and yaw rate
 

@@ -41,7 +41,7 @@ def shifts(model: Model) -> str:
         ModelError: the actuator model has a parameter that is not known.
     """
     lines = []
-    for i, parameter in enumerate(model.content.parameters):
+    for i, parameter in enumerate(model.vector.rows):
         if i < model.motion.slip_size:
             lines.append(f"    model.p[{i}] += by[{i}];")
         elif parameter.name in _SHIFTED:

@@ -8,7 +8,7 @@ from importlib.resources import files
 
 from slipwise import _core
 from slipwise.models.model import Model
-from slipwise.models.parameter_table import physical_parameters
+from slipwise.models.parameter_table import physical_name, physical_parameters
 from slipwise.number_text import estimate_texts
 
 _NONE = _core.AxisLimits()
@@ -37,7 +37,7 @@ def how_known(model: Model) -> dict[str, str]:
 
     A number that is not identified stays in the header, which predicts what the model does; it says so.
     """
-    not_identifiable = {p.name.removeprefix("log_") for p in model.content.parameters if not p.identifiable}
+    not_identifiable = {physical_name(row.name) for row in model.table.rows if not row.identifiable}
     return {
         p.name: f", {' +- '.join(estimate_texts(p.value, p.std))}"
         + ("" if p.identified and p.name not in not_identifiable else ", not identified")

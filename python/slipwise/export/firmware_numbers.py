@@ -47,7 +47,7 @@ class FirmwareNumbers:
         self._model, self._options = model, options
         self.numbers = LearnedNumbers(model.body)
         self._commands = model.content.input == "command"
-        actuator, limits = actuator_of(model), model.content.limits
+        actuator, limits = actuator_of(model), model.limits_section
         slip = slip_gains(self.numbers, body_twists(model))
         behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
         before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
@@ -203,7 +203,7 @@ class FirmwareNumbers:
         return logged[1] / logged[0] if logged[0] > 0.0 else "CRUISE_SPEED is not positive"
 
     def _of_commands(self, what: str, name: str) -> Answer:
-        limits, throttle = self._model.content.limits, self._per_speed()
+        limits, throttle = self._model.limits_section, self._per_speed()
         learned = None if limits is None else getattr(limits.speed, name)
         if learned is None:
             return f"this log shows no {what}"

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.models.limits import LearnedLimit
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import known
-from slipwise.models.schema import UNIDENTIFIABLE_RATIO, LearnedLimit
+from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 from slipwise.number_text import estimate_texts
 
 Floats = NDArray[np.float64]
@@ -64,11 +65,11 @@ class LearnedNumbers:
     def __init__(self, model: Model) -> None:
         self._covariance = model.covariance
         self._prior = np.square(model.prior_std)
-        guessed = np.array([not parameter.identifiable for parameter in model.content.parameters], dtype=bool)
+        guessed = np.array([not parameter.identifiable for parameter in model.vector.rows], dtype=bool)
         unlearned = np.where(guessed[:, None] | guessed, 0.0, model.covariance)
         self._unlearned = unlearned + np.diag(np.where(guessed, self._prior, 0.0))
         self._windows = model.content.provenance.learned_segments
-        self._names = [parameter.name for parameter in model.content.parameters]
+        self._names = [parameter.name for parameter in model.vector.rows]
 
     def exactly(self, value: float) -> LearnedNumber:
         """Return a number that is not learned."""

@@ -34,7 +34,7 @@ def mppi(model: Model, options: ExportOptions) -> ParameterFile:
             advice="calibrate with `--input command`",
         )
     distro = checked_distro(options.ros_distro, "Nav2's MPPI")
-    numbers, actuator, limits = LearnedNumbers(model.body), actuator_of(model), model.content.limits
+    numbers, actuator, limits = LearnedNumbers(model.body), actuator_of(model), model.limits_section
     slip = slip_gains(numbers, body_twists(model))
     behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
     before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from slipwise.export.learned_number import LearnedNumbers
 from slipwise.export.parameter_file import Entry, Kept
-from slipwise.models.schema import LimitsSection
+from slipwise.models.limits import LimitsSection
 
 _DEAD_BANDS = ("VelocityDeadbandCritic", "deadband_velocities")
 _SIDES = """\

@@ -91,14 +91,12 @@ def learned_variances(model: Model, of_model: Callable[[Model], Floats]) -> list
 
 def _identifiable(model: Model) -> Model:
     """Return the model as if the parameters that the log does not determine were known exactly."""
-    known = np.array([parameter.identifiable for parameter in model.content.parameters], dtype=bool)
+    table = model.table
+    known = np.array([row.identifiable for row in table.rows], dtype=bool)
     if known.all():
         return model
-    parameters = [
-        p if p.identifiable else p.model_copy(update={"std": 0.0}) for p in model.content.parameters
-    ]
-    covariance = np.where(known[:, None] & known, model.covariance, 0.0).tolist()
-    return Model(model.content.model_copy(update={"parameters": parameters, "covariance": covariance}))
+    covariance = np.where(known[:, None] & known, table.covariance, 0.0)
+    return model.with_table(table.moved(table.values, covariance))
 
 
 def _settled(model: Model, drive: tuple[float, float], seconds: float) -> _core.SegmentLinearization:

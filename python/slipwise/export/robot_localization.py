@@ -151,7 +151,7 @@ def _accelerations(model: Model, numbers: LearnedNumbers, axes: tuple[_Axis, _Ax
     actuator, body = actuator_of(model), model.content.range.body
     slip = slip_gains(numbers, body_twists(model))
     behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
-    measured = MeasuredLimits(model, body_limits(model.content.limits, behind, numbers), numbers)
+    measured = MeasuredLimits(model, body_limits(model.limits_section, behind, numbers), numbers)
 
     def shown(place: int) -> tuple[list[Limit], list[Limit]]:
         rates = (0.0, 0.0) if body is None else _shown(body, place)

@@ -23,6 +23,7 @@ from slipwise.fleet.knowledge_file import knowledge_text
 from slipwise.fleet.vehicle_numbers import VehicleNumbers, vehicle_numbers
 from slipwise.logs import Log, open_log
 from slipwise.logs.remote import lent, remote_version
+from slipwise.models.car import curve_gains
 from slipwise.models.model import Model
 
 FIRST_UNIX_TIME = 946684800.0  # s, the year 2000; a log with earlier stamps counts from its own start
@@ -171,6 +172,10 @@ def _distance(log: Log) -> float:
 
 
 def _rows(model: Model) -> tuple[Row, ...]:
+    """A curve is one number here: fifty values of it would hide what is odd among tests of chance."""
+    table = model.table
+    single = [row for row in table.rows if row.at is None and row.std > 0.0]
     return tuple(
-        Row(p.name, p.unit, p.value, p.std, p.prior_std, p.identifiable) for p in model.content.parameters
+        Row(p.name, p.unit, p.value, p.std, p.prior_std, p.identifiable)
+        for p in (*single, *curve_gains(table, model.content.range))
     )

@@ -58,9 +58,14 @@ def vehicle_numbers(model: Model) -> VehicleNumbers:
         if slip.separation.identified and slip.separation.value > 0.0:
             found["multiplier"] = slip.separation.value
         if from_commands:
-            speed, turn = step_responses(model)
-            lags = (("lag_speed", speed.risen), ("lag_turn", turn.risen))
-            found |= {name: risen[0] for name, risen in lags if known(*risen)}
+            speed, turn = (response.risen for response in step_responses(model))
+            if model.car is not None:  # what is behind its curves is short
+                speed, turn = (
+                    (model[name].value, model[name].std) for name in ("car.lag", "car.steering_lag")
+                )
+            found |= {
+                name: risen[0] for name, risen in (("lag_speed", speed), ("lag_turn", turn)) if known(*risen)
+            }
     held_out = model.content.verdict.held_out
     if held_out is not None and held_out.segments:
         found |= {"error_heading": held_out.heading, "baseline_heading": held_out.baseline_heading}

@@ -59,5 +59,5 @@ def next_drive(
             advice="give limits: `slipwise excite --speed M/S --yaw-rate RAD/S`",
         ) from problem
     space = CommandSpace(limits.speed, limits.yaw_rate)
-    known = knowledge_of(model) if model.content.parameters else prior_knowledge(space)
+    known = knowledge_of(model) if model.vector.rows else prior_knowledge(space)
     return design_drive(known, space, options, progress=progress)

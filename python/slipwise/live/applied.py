@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from slipwise.calibration.live_table import ApplyTable
-from slipwise.live.outputs import Floats, Validity
+from slipwise.live.outputs import Validity
 from slipwise.models import Model
 from slipwise.models.schema import Parameter, Slip, VerdictSection
 from slipwise.number_text import estimate_texts, number_text
@@ -22,6 +22,7 @@ FARTHEST = 4.0  # times `within`, beyond which nothing is followed, however cert
 class AppliedModel:
     """Where the applied parameters are, on their way from the start to what was learned.
 
+    Limits of the drive and a car's curves are as they were learned: parts of a curve do not fit each other.
     A slip term that the start does not have starts at zero. A lag or delay that it does not have starts at
     what was learned: no number stands for none.
 
@@ -75,7 +76,7 @@ class AppliedModel:
         """Say whether to send at `t` [s]: the interval is over, and something moved enough."""
         if t < self._last + self._rules.interval:
             return False
-        priors = {p.name: p.prior_std for p in model.content.parameters}
+        priors = {row.name: row.prior_std for row in model.vector.rows}
         return any(
             abs(value - self._handed.get(name, self.start.get(name, 0.0)))
             > self._rules.threshold * priors.get(name, math.inf)
@@ -88,24 +89,17 @@ class AppliedModel:
 
     def model(self, learned: Model) -> Model:
         """Return the learned model with the applied values; its covariance holds how far they are."""
-        parameters = learned.content.parameters
-        values = np.array([self.values.get(p.name, p.value) for p in parameters])
-        apart = values - learned.mean
-        covariance: Floats = learned.covariance + np.outer(apart, apart)
-        stds = np.sqrt(np.diag(covariance))
-        rows = [
-            p.model_copy(update={"value": float(value), "std": float(std)})
-            for p, value, std in zip(parameters, values, stds, strict=True)
-        ]
-        changed = {"parameters": rows, "covariance": covariance.tolist()}
-        return Model(learned.content.model_copy(update=changed))
+        table = learned.table
+        values = np.array([self.values.get(p.name, p.value) for p in table.rows])
+        apart = values - table.values
+        return learned.with_table(table.moved(values, table.covariance + np.outer(apart, apart)))
 
     def _wanted(
         self, model: Model | None, validity: Callable[[str], Validity]
     ) -> list[tuple[str, float, float]]:
         """Name, clipped goal and prior sd of the parameters that may move; new ones get their start."""
         found = []
-        for p in model.content.parameters if model is not None else ():
+        for p in model.vector.rows if model is not None else ():
             start = self.start.setdefault(p.name, start_value(p))
             self.values.setdefault(p.name, start)
             self.held.pop(p.name, None)
@@ -133,7 +127,7 @@ class AppliedModel:
 
 def values_of(model: Model | None) -> dict[str, float]:
     """Return a model's parameters as the model file has them; none of no model."""
-    return {} if model is None else {p.name: p.value for p in model.content.parameters}
+    return {} if model is None else {row.name: row.value for row in model.vector.rows}
 
 
 def start_value(p: Parameter) -> float:
@@ -154,16 +148,14 @@ def without_slip(model: Model, why: str) -> Model:
         **nothing,
         "sensor_extrinsics": False,
         "slip": Slip(basis="none", lon=[], lat=[], ang=[]),
-        "parameters": [],
-        "covariance": [],
-        "limits": None,
+        "limit_gains": None,
         "body_force": None,
         "slip_disturbance": None,
         "weights": {},
         "surfaces": [],
         "verdict": verdict,
     }
-    return Model(model.content.model_copy(update=changed))
+    return model.with_table(model.table.of("car"), **changed)
 
 
 def physical(name: str, values: Mapping[str, float]) -> float | None:

@@ -36,7 +36,7 @@ def rules_for(start: Model | None, *, reverse: bool | None, stale_after: float) 
     if reverse is None:
         reverse = start is None or start.content.range.speed[0] < REVERSE
     top = (math.inf, math.inf)
-    if start is not None and start.content.limits is not None:
+    if start is not None:
         found = start.parameters
         names = ("limits.speed.saturation", "limits.yaw_rate.saturation")
         top = tuple(  # type: ignore[assignment]

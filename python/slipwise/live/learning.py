@@ -91,7 +91,7 @@ class Learning:
             self.validity.contradicted("; ".join(found))
         else:
             self._said.ends(t, "no model")
-            for p in self.model.content.parameters:
+            for p in self.model.vector.rows:
                 self.start_values.setdefault(p.name, start_value(p))
             waits = "" if self._shown else self.learner.not_shown_yet()
             self._shown = not waits

@@ -101,9 +101,9 @@ class MoveAdviser:
             raise _NotYetError("throttle and steering are commanded here, no speeds")
         commands = self._commands(model)
         yield
-        if model.content.parameters:
+        if model.vector.rows:
             knowledge = knowledge_of(model)
-            kept = model.content.parameters[: len(knowledge.mean)]
+            kept = model.vector.rows[: len(knowledge.mean)]
             prior_std = np.array([each.prior_std for each in kept])
         else:
             speed, _, yaw_rate = np.abs(commands).max(axis=0).tolist()

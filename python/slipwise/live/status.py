@@ -125,9 +125,9 @@ def parameters_now(learning: Learning, applied: AppliedModel | None) -> tuple[Pa
     priors = {physical_name(p.name): p for p in learning.model.content.parameters}
     rows = []
     for name, each in learning.model.parameters.items():
-        prior = priors.get(name)
-        if prior is None:
-            continue  # a limit of the drive
+        prior = priors[name]
+        if prior.prior_std == 0.0:
+            continue  # given: a car stands without throttle
         logarithm = prior.name != name
         start = physical(name, learning.start_values)
         rows.append(

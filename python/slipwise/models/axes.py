@@ -74,14 +74,14 @@ THROTTLE = Axes(("throttle", "steering"), ("", ""))
 
 def axes_of(model: Model) -> Axes:
     """Return the axes of the commands that a model takes."""
-    if model.content.car is not None:
+    if model.car is not None:
         return THROTTLE
     return drive_axes(model)
 
 
 def drive_axes(model: Model) -> Axes:
     """Return the axes of what the drive of a model does, as wheels show it."""
-    if model.content.car is not None:
+    if model.car is not None:
         return TWIST
     driven = model.motion.basis.sideways or model.content.range.sideways is not None
     return SIDEWAYS if driven else TWIST

@@ -132,31 +132,15 @@ def without_force(model: Model) -> Model:
     if section is None:
         return model
     content, ours = model.content, set(force_names(section.frame))
-    names = [parameter.name for parameter in content.parameters]
-    gone = [i for i, name in enumerate(names) if name in ours]
-    kept = [i for i, name in enumerate(names) if name not in ours]
-    unseen = [i for i in gone if not content.parameters[i].identifiable]
-    mean, covariance = _given_none(model.mean, model.covariance, unseen)
-    stds = np.sqrt(np.diag(covariance))
-    update = {"value": mean, "std": stds}
-    parameters = [
-        content.parameters[i].model_copy(update={key: float(numbers[i]) for key, numbers in update.items()})
-        for i in kept
-    ]
+    table = model.table
+    unseen = [i for i, row in enumerate(table.rows) if row.name in ours and not row.identifiable]
+    kept = [i for i, name in enumerate(table.names) if name not in ours]
+    known = table.moved(*_given_none(table.values, table.covariance, unseen))
     slip = {
         channel: [term for term in getattr(content.slip, channel) if f"{channel}.{term}" not in ours]
         for channel in ("lon", "lat", "ang")
     }
-    return type(model)(
-        content.model_copy(
-            update={
-                "parameters": parameters,
-                "covariance": covariance[np.ix_(kept, kept)].tolist(),
-                "slip": content.slip.model_copy(update=slip),
-                "body_force": None,
-            }
-        )
-    )
+    return model.with_table(known.at(kept), slip=content.slip.model_copy(update=slip), body_force=None)
 
 
 def _given_none(

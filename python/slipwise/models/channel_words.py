@@ -50,11 +50,36 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
     if model.content.input != "command":
         return []
     found = {p.name: p for p in parameters}
+    if model.car is not None:
+        return _car_sentences(model, found)
     if not any(name.startswith(("time_constant_", "delay_")) for name in found):
         return ["Follows commands at once."]
     responses = dict(zip(_CHANNELS, step_responses(model), strict=True))
     said = {place: _said(found, place, responses[place]) for place in _CHANNELS}
     return [*_follows(said), *_arrives(found, responses)]
+
+
+def _car_sentences(model: Model, found: Found) -> list[str]:
+    """Say how fast and how tight a car drives at the largest commands that it was given, and how soon."""
+    span, sentences = model.content.range, []
+    for curve, driven, words in (
+        ("speed", span.throttle, "At a throttle of {at:g} it drives {value} m/s."),
+        ("curvature", span.steering, "At a steering of {at:g} its path has a curvature of {value} 1/m."),
+    ):
+        low, high = driven or (-1.0, 1.0)
+        knots = [
+            (row.at, found[row.name]) for row in model.table.rows if row.name.startswith(f"car.{curve}(")
+        ]
+        inside = [(at, p) for at, p in knots if at is not None and low <= at <= high and p.identified]
+        if inside:
+            at, p = max(inside, key=lambda each: each[0])
+            sentences.append(words.format(at=at, value=estimate_text(p.value, p.std)))
+    lags = [
+        f"{what} with a time constant of {_seconds((found[name].value, found[name].std))}"
+        for name, what in (("car.lag", "the throttle"), ("car.steering_lag", "the steering"))
+        if found[name].identified
+    ]
+    return [*sentences, f"Follows {' and '.join(lags)}."] if lags else sentences
 
 
 def _follows(said: Mapping[str, _Said]) -> list[str]:

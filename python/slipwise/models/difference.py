@@ -7,8 +7,9 @@ import math
 from dataclasses import dataclass
 
 from slipwise.errors import ModelError
+from slipwise.models.car import curve_gains
 from slipwise.models.model import Model
-from slipwise.models.parameter_table import PhysicalParameter, known, physical_parameters
+from slipwise.models.parameter_table import PhysicalParameter, physical_parameters
 from slipwise.models.slip_words import Gain, slip_gains
 
 #: Standard deviations of a difference from which on two models differ.
@@ -41,20 +42,27 @@ class Difference:
 
 
 def differences(first: Model, second: Model) -> tuple[Difference, ...]:
-    """Compare gains of the body, parameters and limits.
+    """Compare gains of the body, and all parameters.
 
     Gains can be compared whatever the bases are. Slip terms are compared where both have the same ones,
     since a term means something else beside others.
 
     Raises:
-        ModelError: one was learned from commands, the other from wheel speeds.
+        ModelError: one was learned from commands, the other from wheel speeds, or one is of a car that is
+            commanded by throttle and steering.
     """
     if first.content.input != second.content.input:
         raise ModelError(
             f"one model was learned from {first.content.input}s, the other from {second.content.input}s",
             advice="compare models that were learned from the same input",
         )
+    if (first.car is None) != (second.car is None):
+        raise ModelError(
+            "one model takes throttle and steering, the other speeds and yaw rates",
+            advice="compare models that were learned from the same input",
+        )
     rows = [_paired(*gains) for gains in zip(_gains(first), _gains(second), strict=True)]
+    rows += _curve_rows(first, second)
     tables = [{p.name: p for p in _comparable(model, first, second)} for model in (first, second)]
     for name in dict.fromkeys((*tables[0], *tables[1])):
         one, other = (table.get(name) for table in tables)
@@ -86,8 +94,18 @@ def _gains(model: Model) -> list[tuple[str, Gain]]:
     return [*rows, ("separation multiplier", gains.separation)] if model.content.input == "wheel" else rows
 
 
+def _curve_rows(first: Model, second: Model) -> list[Difference]:
+    gains = (curve_gains(model.table, model.content.range) for model in (first, second))
+    ours, theirs = ({gain.name: gain for gain in each} for each in gains)
+    return [
+        Difference(name, ours[name].unit, *((g.value, g.std) for g in (ours[name], theirs[name])))
+        for name in ours
+        if name in theirs
+    ]
+
+
 def _paired(first: tuple[str, Gain], second: tuple[str, Gain]) -> Difference:
-    one, other = ((g.value, g.std) if known(g.value, g.std) else None for _, g in (first, second))
+    one, other = ((g.value, g.std) if g.identified else None for _, g in (first, second))
     return Difference(first[0], "-", one, other)
 
 

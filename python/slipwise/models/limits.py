@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The limits of a drive in a model: for the core, and in rows of numbers."""
+"""The limits of a drive: as rows of a model's parameters, by axis and kind, and for the core."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 
 from slipwise import _core
-from slipwise.models.schema import AxisLimitsSection, LearnedLimit, LimitsSection
+from slipwise.models.schema import NotNegative, Parameter, Positive, Section
 
 AXES = ("speed", "yaw_rate", "side")
 KINDS = ("dead_band", "saturation", "slew_rate_up", "slew_rate_down")
+SEPARATION = "limits.wheel_separation"
 _AXIS_UNITS = {"speed": "m/s", "yaw_rate": "rad/s", "side": "m/s"}
 _CORE_AXES = dict(
     zip(AXES, (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate, _core.LimitedAxis.Side), strict=True)
@@ -28,8 +30,36 @@ _CORE_KINDS = dict(
 )
 
 
+class LearnedLimit(Section):
+    """One limit of the drive, the same for both signs."""
+
+    value: Positive  # [m/s or rad/s; rates m/s^2 or rad/s^2]
+    std: NotNegative
+
+
+class AxisLimitsSection(Section):
+    """Limits of one axis; what the log did not show is absent, and not limited."""
+
+    dead_band: LearnedLimit | None = None  # what is slower gives zero, the rest passes as it is
+    saturation: LearnedLimit | None = None  # no faster
+    slew_rate_up: LearnedLimit | None = None  # away from zero no quicker
+    slew_rate_down: LearnedLimit | None = None  # towards zero no quicker
+
+
+class LimitsSection(Section):
+    """Limits before delay and lag: of the commands, then of each side's speed, v -+ w separation / 2."""
+
+    speed: AxisLimitsSection
+    yaw_rate: AxisLimitsSection
+    side: AxisLimitsSection
+    wheel_separation: Positive  # [m]; without limits of the sides it has no effect, nor have the gains
+    wheel_separation_std: NotNegative
+    gain_v: Positive  # of what is asked of the sides over the limited command [-]
+    gain_omega: Positive  # [-]
+
+
 def limits_section(search: _core.LimitSearch) -> LimitsSection:
-    """Return what a search found as the section of a model file."""
+    """Return what a search found, by axis and kind."""
     found = {(limit.axis, limit.kind): limit for limit in search.found}
 
     def learned(axis: str, kind: str) -> LearnedLimit | None:
@@ -44,6 +74,62 @@ def limits_section(search: _core.LimitSearch) -> LimitsSection:
         wheel_separation_std=search.wheel_separation_std,
         gain_v=limits.gain_v,
         gain_omega=limits.gain_omega,
+    )
+
+
+def limit_rows(section: LimitsSection) -> list[Parameter]:
+    """Return limits as rows of a model's parameters; each is known by itself."""
+    rows = []
+    for axis in AXES:
+        for kind in KINDS:
+            limit: LearnedLimit | None = getattr(getattr(section, axis), kind)
+            if limit is not None:
+                unit = _AXIS_UNITS[axis] + ("^2" if kind in ("slew_rate_up", "slew_rate_down") else "")
+                rows.append(_row(f"limits.{axis}.{kind}", unit, limit.value, limit.std))
+    if any(row.name.startswith("limits.side") for row in rows):
+        rows.append(_row(SEPARATION, "m", section.wheel_separation, section.wheel_separation_std))
+    return rows
+
+
+def _row(name: str, unit: str, value: float, std: float) -> Parameter:
+    """A limit was looked for from nothing: as if it had been known to its own size before."""
+    return Parameter(
+        name=name,
+        stage="limits",
+        unit=unit,
+        value=value,
+        std=std,
+        prior_std=value,
+        identifiable=2.0 * std * std <= value * value,
+    )
+
+
+def limits_of(rows: Iterable[Parameter], gains: Sequence[float] | None) -> LimitsSection | None:
+    """Return the limits among the rows of a model's parameters, by axis and kind; None where there are none.
+
+    Raises:
+        ValueError: there is no such limit, or one is not positive.
+    """
+    found = {row.name: row for row in rows if row.stage == "limits"}
+    if not found or gains is None:
+        return None
+
+    def learned(name: str) -> LearnedLimit | None:
+        row = found.pop(name, None)
+        return None if row is None else LearnedLimit(value=row.value, std=row.std)
+
+    axes = {
+        axis: AxisLimitsSection(**{kind: learned(f"limits.{axis}.{kind}") for kind in KINDS}) for axis in AXES
+    }
+    apart = learned(SEPARATION) or LearnedLimit(value=1.0, std=0.0)
+    if found:
+        raise ValueError(f"no drive has a limit {', '.join(found)}")
+    return LimitsSection(
+        **axes,
+        wheel_separation=apart.value,
+        wheel_separation_std=apart.std,
+        gain_v=gains[0],
+        gain_omega=gains[1],
     )
 
 
@@ -66,17 +152,3 @@ def core_limits(section: LimitsSection) -> _core.CommandLimits:
         section.gain_v,
         section.gain_omega,
     )
-
-
-def limit_rows(section: LimitsSection) -> list[tuple[str, float, float, str]]:
-    """Return name, value, standard deviation and unit of every limit."""
-    rows = []
-    for axis in AXES:
-        for kind in KINDS:
-            limit: LearnedLimit | None = getattr(getattr(section, axis), kind)
-            if limit is not None:
-                unit = _AXIS_UNITS[axis] + ("^2" if kind in ("slew_rate_up", "slew_rate_down") else "")
-                rows.append((f"limits.{axis}.{kind}", limit.value, limit.std, unit))
-    if any(name.startswith("limits.side") for name, *_ in rows):
-        rows.append(("limits.wheel_separation", section.wheel_separation, section.wheel_separation_std, "m"))
-    return rows

@@ -19,8 +19,10 @@ from slipwise.errors import ModelError
 from slipwise.files import write_text_whole
 from slipwise.frames import data_frame
 from slipwise.lazy_names import no_attribute
-from slipwise.models.car import core_car
-from slipwise.models.limits import core_limits
+from slipwise.models.car import car_of
+from slipwise.models.consistent_content import check_content
+from slipwise.models.limits import LimitsSection, core_limits, limits_of
+from slipwise.models.parameter_table import VECTOR, ParameterTable, PhysicalParameter, physical_parameters
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile, VerdictSection
 from slipwise.models.upgrade import READ_VERSIONS, upgraded
 from slipwise.models.yaml_file import parse_yaml, read_yaml
@@ -29,7 +31,6 @@ from slipwise.validation_text import first_problem
 if TYPE_CHECKING:
     import pandas as pd
 
-    from slipwise.models.parameter_table import PhysicalParameter
 
 _DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # the same text, several times faster in C
 _HINTS = {
@@ -41,8 +42,6 @@ _HINTS = {
     "params": "model.parameters",
     "load": "slipwise.load_model(path)",
 }
-EXTRINSICS_PARAMETERS = 3  # the last ones, where there are any
-LONGEST_CHAIN = 1000.0  # s; no drive answers its commands later
 
 
 @dataclass(frozen=True)
@@ -56,48 +55,7 @@ class Model:
     content: ModelFile
 
     def __post_init__(self) -> None:
-        names = [info.name for info in self.motion.parameters]
-        stated = [parameter.name for parameter in self.content.parameters]
-        if names != stated:
-            raise ModelError(
-                f"the parameters are {', '.join(stated)} where slip and actuator have {', '.join(names)}",
-                advice="calibrate again, or restore the file",
-            )
-        for info, parameter in zip(self.motion.parameters, self.content.parameters, strict=True):
-            if parameter.unit != info.unit:
-                raise ModelError(
-                    f"the unit of {info.name} is {info.unit}, not {parameter.unit[:40]!r}",
-                    advice="calibrate again, or restore the file",
-                )
-        given = self.content.parameters
-        seconds = np.exp([min(p.value, 700.0) for p in given if p.name.startswith("log_")])
-        delays = np.abs([p.value for p in given if p.name.startswith("delay_")])
-        if (np.concatenate((seconds, delays)) > LONGEST_CHAIN).any():
-            raise ModelError(
-                f"parameters: a lag or delay is longer than {LONGEST_CHAIN:g} s",
-                advice="calibrate again, or restore the file",
-            )
-        for surface in self.content.surfaces:
-            known = surface.memory.bases.values() if surface.memory is not None else ()
-            if not all(
-                _is_covariance(np.array(each.covariance, dtype=np.float64).reshape(len(each.slip), -1))
-                for each in (surface, *known)
-                if each.slip
-            ):
-                raise ModelError(
-                    f"the covariance of the surface {surface.name!r} is not symmetric and positive",
-                    advice="calibrate again, or restore the file",
-                )
-        if not _is_covariance(self.covariance):
-            raise ModelError(
-                "covariance: not symmetric and positive", advice="calibrate again, or restore the file"
-            )
-        stds = [parameter.std for parameter in self.content.parameters]
-        if not np.allclose(np.square(stds), np.diag(self.covariance), rtol=1e-6, atol=0.0):
-            raise ModelError(
-                "parameters: a standard deviation is not the root of its variance in the covariance",
-                advice="calibrate again, or restore the file",
-            )
+        check_content(self)
 
     def __repr__(self) -> str:
         from slipwise.models.summary import summarise
@@ -145,9 +103,7 @@ class Model:
 
     @cached_property
     def parameters(self) -> dict[str, PhysicalParameter]:
-        """Parameters and limits in physical units, by name."""
-        from slipwise.models.parameter_table import physical_parameters
-
+        """All that was learned in physical units, by name."""
         return {parameter.name: parameter for parameter in physical_parameters(self)}
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -182,25 +138,39 @@ class Model:
         """The model of base_link: without the rows that say where the pose sensor sits on it."""
         if not self.content.sensor_extrinsics:
             return self
-        kept = len(self.content.parameters) - EXTRINSICS_PARAMETERS
-        rows = {
-            "sensor_extrinsics": False,
-            "parameters": self.content.parameters[:kept],
-            "covariance": [row[:kept] for row in self.content.covariance[:kept]],
-        }
-        return Model(self.content.model_copy(update=rows))
+        return self.with_table(self.table.without("sensor"), sensor_extrinsics=False)
+
+    @cached_property
+    def table(self) -> ParameterTable:
+        """All that was learned: one row a number, and one covariance."""
+        rows = self.content.parameters
+        covariance = np.array(self.content.covariance, dtype=np.float64).reshape(len(rows), len(rows))
+        return ParameterTable(tuple(rows), covariance)
+
+    @cached_property
+    def vector(self) -> ParameterTable:
+        """The rows that the core takes as one vector: without limits and curves."""
+        return self.table.of(*VECTOR)
+
+    def with_table(self, table: ParameterTable, **changes: object) -> Model:
+        """Return the model with other rows, and other content."""
+        return Model(self.content.model_copy(update={**table.content(), **changes}))
+
+    @cached_property
+    def limits_section(self) -> LimitsSection | None:
+        """The limits in front of the actuator, by axis and kind, where some were learned."""
+        return limits_of(self.content.parameters, self.content.limit_gains)
 
     @cached_property
     def limits(self) -> _core.CommandLimits | None:
         """The limits in front of the actuator, where some were learned."""
-        section = self.content.limits
+        section = self.limits_section
         return None if section is None else core_limits(section)
 
     @cached_property
     def car(self) -> _core.CarCurves | None:
         """What throttle and steering do, where these are the commands."""
-        section = self.content.car
-        return None if section is None else core_car(section)
+        return car_of(self.content.parameters, self.table.covariance)
 
     def refuse_heading(self, what: str) -> None:
         """Refuse a use that knows no heading over the map where a force of the model depends on it.
@@ -220,7 +190,7 @@ class Model:
         Raises:
             ModelError: it does.
         """
-        if self.content.car is not None:
+        if self.car is not None:
             raise ModelError(
                 f"{what} need speeds and yaw rates, and this model takes throttle and steering",
                 advice="predict() takes them; or calibrate from measured speeds, with --input wheel",
@@ -244,13 +214,12 @@ class Model:
     @property
     def mean(self) -> NDArray[np.float64]:
         """Parameter values, [parameters], in SI units."""
-        return np.array([parameter.value for parameter in self.content.parameters], dtype=np.float64)
+        return self.vector.values.copy()
 
     @property
     def covariance(self) -> NDArray[np.float64]:
         """Covariance of the parameters, [parameters, parameters]."""
-        size = len(self.content.parameters)
-        return np.array(self.content.covariance, dtype=np.float64).reshape(size, size)
+        return self.vector.covariance.copy()
 
     @cached_property
     def noise(self) -> _core.MotionNoise:
@@ -263,7 +232,7 @@ class Model:
     @property
     def prior_std(self) -> NDArray[np.float64]:
         """Standard deviations of the parameters before the log, [parameters]."""
-        return np.array([parameter.prior_std for parameter in self.content.parameters], dtype=np.float64)
+        return np.array([row.prior_std for row in self.vector.rows], dtype=np.float64)
 
     @cached_property
     def posterior(self) -> _core.MotionPosterior:
@@ -321,35 +290,21 @@ class Model:
         content = self.content.model_dump(mode="json")
         if not content["verdict"]["force"]:
             del content["verdict"]["force"]
-        for key in ("surfaces", "labels", "car", "body_force"):
+        for key in ("surfaces", "labels", "body_force", "limit_gains", "branches", "message"):
             if not content[key]:
                 del content[key]
+        content["range"] = {key: value for key, value in content["range"].items() if value is not None}
+        for row in content["parameters"]:
+            for key in ("at", "input", "sensor", "branch"):
+                if row[key] in (None, ""):
+                    del row[key]
         for surface in content.get("surfaces", ()):
             if not surface["classes"]:
                 del surface["classes"]
-        if content["range"]["sideways"] is None:
-            del content["range"]["sideways"]
         if content["provenance"]["prior"] is None:
             del content["provenance"]["prior"]
         body = yaml.dump(content, Dumper=_DUMPER, sort_keys=False, width=120, default_flow_style=None)
         return head + body
-
-
-def _is_covariance(matrix: NDArray[np.float64]) -> bool:
-    """Whether the matrix, scaled to correlations, is symmetric without negative eigenvalues."""
-    variances = np.diag(matrix)
-    if (variances < 0.0).any():
-        return False
-    stds = np.sqrt(variances)
-    known = stds > 0.0
-    if matrix[~known].any() or matrix[:, ~known].any():
-        return False
-    correlation = matrix[np.ix_(known, known)] / stds[known] / stds[known, None]
-    if not known.any():
-        return True
-    if (np.abs(correlation) > 1.0 + 1e-6).any() or not np.allclose(correlation, correlation.T, atol=1e-6):
-        return False
-    return bool(np.linalg.eigvalsh(correlation).min() >= -1e-6)
 
 
 def load_model(path: str | Path) -> Model:
@@ -373,7 +328,7 @@ def parse_model(text: str, *, where: str) -> Model:
 def _model_of(content: dict[str, Any], where: str) -> Model:
     version = content.get("slipwise_model")
     if isinstance(version, bool) or version not in READ_VERSIONS:
-        known = " and ".join(map(str, READ_VERSIONS))
+        known = f"{', '.join(map(str, READ_VERSIONS[:-1]))} and {READ_VERSIONS[-1]}"
         raise ModelError(
             f"the file has schema version {version!r}, this slipwise reads {known}",
             where=where,

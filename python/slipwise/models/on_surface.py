@@ -27,19 +27,12 @@ def on_surface(model: Model, name: str) -> Model:
             advice=f"it remembers {known}" if known else "it was learned without a memory of surfaces",
         )
     size = len(surface.slip)
-    covariance = model.covariance
+    values, covariance = model.table.values.copy(), model.table.covariance.copy()
+    values[:size] = surface.slip
     covariance[:size, :] = 0.0
     covariance[:, :size] = 0.0
     covariance[:size, :size] = surface.covariance
-    stds = np.sqrt(np.diag(covariance))
-    parameters = [
-        parameter.model_copy(update={"value": surface.slip[i], "std": float(stds[i])})
-        if i < size
-        else parameter
-        for i, parameter in enumerate(content.parameters)
-    ]
-    changed = {"parameters": parameters, "covariance": covariance.tolist()}
-    return Model(content.model_copy(update=changed | _noise(content, surface)))
+    return model.with_table(model.table.moved(values, covariance), **_noise(content, surface))
 
 
 def renamed(model: Model, old: str, new: str) -> Model:

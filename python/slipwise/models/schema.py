@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from slipwise.student import LEAST_DOF, MOST_DOF
 
-SCHEMA_VERSION = 4
+SCHEMA_VERSION = 5
 
 UNIDENTIFIABLE_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not identifiable
 LONGEST_NAME = 80  # characters of the name of a surface
@@ -32,13 +31,16 @@ Triple = Annotated[list[NotNegative], Field(min_length=3, max_length=3)]
 Pair = Annotated[list[NotNegative], Field(min_length=2, max_length=2)]
 Span = Annotated[list[Finite], Field(min_length=2, max_length=2)]
 InputName = Literal["command", "wheel"]
+Stage = Literal["slip", "force", "actuator", "clock", "sensor", "limits", "car"]
 
 
-class _Section(BaseModel):
+class Section(BaseModel):
+    """A part of a model file."""
+
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class Slip(_Section):
+class Slip(Section):
     """Terms per channel; slip rates are added to the commanded twist (thesis 3.1)."""
 
     basis: str
@@ -47,25 +49,30 @@ class Slip(_Section):
     ang: list[str]
 
 
-class Parameter(_Section):
+class Parameter(Section):
     """One learned number, in the order of the covariance."""
 
     name: str
+    stage: Stage  # what it belongs to: a stage of the motion, a clock, or where a sensor sits
     unit: str
     value: Finite
     std: NotNegative
     prior_std: NotNegative
     identifiable: bool  # the log says more about it than the prior does
+    at: Finite | None = None  # throttle or steering, of a value on a curve
+    input: InputName | None = None  # where a model takes both inputs; None: it is of either
+    sensor: str = ""  # where several sensors have places and clocks of their own
+    branch: str = ""  # of the slip, where it has several
 
 
-class StudentT(_Section):
+class StudentT(Section):
     """What held-out errors of one horizon say of the predicted distribution, a Student t."""
 
     inflation: Positive  # factor of the covariance [-]
     dof: Dof  # degrees of freedom; few are heavy tails [-]
 
 
-class Noise(_Section):
+class Noise(Section):
     """Noise of the slip rates (lon, lat, ang) and poses; `variance_scale` multiplies that of (x, y, yaw)."""
 
     psd_time: Triple  # white, while moving [m^2/s, m^2/s, rad^2/s]
@@ -77,7 +84,7 @@ class Noise(_Section):
     student_t: dict[NotNegative, StudentT] = {}  # by horizon [s]
 
 
-class DisturbanceCandidate(_Section):
+class DisturbanceCandidate(Section):
     """One guess of the slip disturbance: first-order Gauss-Markov processes of one time constant."""
 
     linear: NotNegative  # of the forward and sideways terms, as a fraction of their prior std [-]
@@ -86,7 +93,7 @@ class DisturbanceCandidate(_Section):
     weight: NotNegative  # how likely this guess is; all together 1
 
 
-class SlipDisturbanceSection(_Section):
+class SlipDisturbanceSection(Section):
     """The slip disturbance about the parameters, beside the noise."""
 
     segment: Positive  # length of the segments that say how [s]
@@ -100,7 +107,7 @@ class SlipDisturbanceSection(_Section):
         return self
 
 
-class BodyForceSection(_Section):
+class BodyForceSection(Section):
     """A force that was learned beside slip: some terms are its, and hold for the end of the log."""
 
     frame: Literal["body", "world"]  # what it stays fixed to: the robot, or the frame of the poses
@@ -108,7 +115,7 @@ class BodyForceSection(_Section):
     std: Positive  # of the drift that it causes per distance driven [m/m], and of the turn [rad/m]
 
 
-class MeasuredBody(_Section):
+class MeasuredBody(Section):
     """What the poses show of the body: rates that 99 % of its motion stayed below, 0 where none was seen."""
 
     speed: Span  # backward (not above 0), forward [m/s]
@@ -119,25 +126,27 @@ class MeasuredBody(_Section):
     seconds: NotNegative  # between the poses that show this; 0: they are too rare
 
 
-class Range(_Section):
+class Range(Section):
     """What the robot did in the log; the model is not known to hold beyond it."""
 
     speed: Span  # of the inputs [m/s]
     yaw_rate: Span  # of the inputs [rad/s]
     sideways: Span | None = None  # speed to the left, of inputs that have one [m/s]
+    throttle: Span | None = None  # of a car; its speeds are then what its curves make of these
+    steering: Span | None = None
     slope: NotNegative  # steepest roll or pitch [rad], 0 where it was not measured
     wheel_step: NotNegative = 0.0  # between wheel speeds [s], 0 where there were none
     body: MeasuredBody | None = None  # None: an older slipwise wrote the file, or another estimator learned
 
 
-class LogReference(_Section):
+class LogReference(Section):
     """A log the model was learned from."""
 
     path: str
     sha256: str
 
 
-class Provenance(_Section):
+class Provenance(Section):
     """Where the model comes from."""
 
     slipwise_version: str
@@ -148,7 +157,7 @@ class Provenance(_Section):
     prior: LogReference | None = None  # the fleet that learning began with
 
 
-class HeldOut(_Section):
+class HeldOut(Section):
     """Mean errors of predictions that the model had not learned from, beside the kinematic baseline's."""
 
     horizon: NotNegative  # [s]
@@ -164,7 +173,7 @@ class HeldOut(_Section):
         return self.segments > 0 and self.position == self.baseline_position == 0.0
 
 
-class Confounded(_Section):
+class Confounded(Section):
     """Two parameters that the log can hardly tell apart."""
 
     first: str
@@ -172,7 +181,7 @@ class Confounded(_Section):
     correlation: Annotated[Number, Field(ge=-1.000001, le=1.000001, allow_inf_nan=False)]
 
 
-class VerdictSection(_Section):
+class VerdictSection(Section):
     """Whether the model may be used, in words."""
 
     good: bool
@@ -190,62 +199,7 @@ class VerdictSection(_Section):
         return " ".join((self.sentence, *self.advice))
 
 
-class LearnedLimit(_Section):
-    """One limit of the drive, the same for both signs."""
-
-    value: Positive  # [m/s or rad/s; rates m/s^2 or rad/s^2]
-    std: NotNegative
-
-
-class AxisLimitsSection(_Section):
-    """Limits of one axis; what the log did not show is absent, and not limited."""
-
-    dead_band: LearnedLimit | None = None  # what is slower gives zero, the rest passes as it is
-    saturation: LearnedLimit | None = None  # no faster
-    slew_rate_up: LearnedLimit | None = None  # away from zero no quicker
-    slew_rate_down: LearnedLimit | None = None  # towards zero no quicker
-
-
-class KnotCurveSection(_Section):
-    """A function that is straight between its knots; beyond the last it stays level."""
-
-    at: Annotated[list[Finite], Field(min_length=2)]  # increasing
-    value: list[Finite]
-    std: list[NotNegative]  # of the values; near the prior's where nothing was driven
-
-    @model_validator(mode="after")
-    def _knots_fit(self) -> KnotCurveSection:
-        if not len(self.at) == len(self.value) == len(self.std):
-            raise ValueError("a curve needs a value and a deviation at each knot")
-        if any(low >= high for low, high in pairwise(self.at)):
-            raise ValueError("the knots of a curve must increase")
-        return self
-
-
-class CarSection(_Section):
-    """What throttle and steering in [-1, 1] of a car do; the rest of the model stands behind it."""
-
-    speed: KnotCurveSection  # by throttle [m/s]
-    curvature: KnotCurveSection  # by steering [1/m]
-    lag: NotNegative  # of the speed [s]
-    steering_lag: NotNegative  # [s]
-    cornering_drag: NotNegative  # [s/rad]
-    understeer: NotNegative  # [s^2/m^2]
-
-
-class LimitsSection(_Section):
-    """Limits before delay and lag: of the commands, then of each side's speed, v -+ w separation / 2."""
-
-    speed: AxisLimitsSection
-    yaw_rate: AxisLimitsSection
-    side: AxisLimitsSection
-    wheel_separation: Positive  # [m]; without limits of the sides it has no effect, nor have the gains
-    wheel_separation_std: NotNegative
-    gain_v: Positive  # of what is asked of the sides over the limited command [-]
-    gain_omega: Positive  # [-]
-
-
-class SurfaceBasis(_Section):
+class SurfaceBasis(Section):
     """What one basis knows of a surface, given the robot: what learning goes on from."""
 
     slip: list[Finite]  # one value per term, where the robot's parameters are `robot`
@@ -264,7 +218,7 @@ class SurfaceBasis(_Section):
         return self
 
 
-class SurfaceMemorySection(_Section):
+class SurfaceMemorySection(Section):
     """What a learner goes on from where it comes to the surface again."""
 
     observed: Annotated[int, Field(ge=0)]  # segments by which bases were weighted
@@ -279,14 +233,14 @@ class SurfaceMemorySection(_Section):
         return self
 
 
-class LabelSection(_Section):
+class LabelSection(Section):
     """What labels of surfaces were worth."""
 
     all: NotNegative  # labels that were judged by the surface that was then found
     right: NotNegative
 
 
-class SurfaceSection(_Section):
+class SurfaceSection(Section):
     """The slip of a surface that was driven on; lags, delays and noise are those of the model."""
 
     name: Annotated[str, Field(min_length=1, max_length=LONGEST_NAME)]
@@ -309,10 +263,10 @@ class SurfaceSection(_Section):
         return self
 
 
-class ModelFile(_Section):
+class ModelFile(Section):
     """Everything that crosses from learning to using."""
 
-    slipwise_model: Literal[4]
+    slipwise_model: Literal[5]
     input: InputName
     slip: Slip
     dynamics: bool  # time constants and delays are parameters
@@ -320,8 +274,7 @@ class ModelFile(_Section):
     clock_offset: bool  # the offset between inputs and poses is a parameter
     response: bool = False  # gain and slow mode of the drive are parameters, learned from wheel speeds
     sensor_extrinsics: bool = False  # the pose of the pose sensor in base_link is three parameters
-    limits: LimitsSection | None = None  # of the drive, in front of its delay and lag
-    car: CarSection | None = None  # commands are throttle and steering of a car
+    limit_gains: Pair | None = None  # of speed and yaw rate behind the drive's limits, where it has some
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise
@@ -337,6 +290,8 @@ class ModelFile(_Section):
         SurfaceSection
     ] = []  # that are remembered; the parameters are those of the last one driven
     labels: LabelSection | None = None  # of surfaces, where there are some
+    branches: dict[str, NotNegative] = {}  # weights of the branches of the slip
+    message: dict[str, str] = {}  # fields of a message that inputs are read from, by axis
 
     @model_validator(mode="after")
     def _surfaces_have_this_slip(self) -> ModelFile:
@@ -364,6 +319,9 @@ class ModelFile(_Section):
 
     @model_validator(mode="after")
     def _limits_have_commands(self) -> ModelFile:
-        if self.limits is not None and not self.dynamics:
+        limited = any(row.stage == "limits" for row in self.parameters)
+        if limited and not self.dynamics:
             raise ValueError("limits are of commands, and this model has no lag and delay of commands")
+        if limited != (self.limit_gains is not None):
+            raise ValueError("limit_gains belong to limits of the drive, and these to them")
         return self

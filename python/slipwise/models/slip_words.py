@@ -77,7 +77,7 @@ def slip_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> l
     if not exact:
         return [_moves(slip.speed, slip.yaw_rate, "its wheels say"), *_reaches(actuator)]
     speed, yaw_rate = slip.speed.times(actuator["speed"]), slip.yaw_rate.times(actuator["yaw rate"])
-    return [_moves(speed, yaw_rate, "is commanded")]
+    return [_moves(speed, yaw_rate, "is commanded" if model.car is None else "its curves say")]
 
 
 def _moves(speed: Gain, yaw_rate: Gain, source: str, besides: str = "") -> str:

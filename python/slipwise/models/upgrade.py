@@ -6,10 +6,20 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from slipwise.models.renamed_keys import RenamedKeys, with_new_keys
-from slipwise.models.schema import SCHEMA_VERSION
+import numpy as np
+from numpy.typing import NDArray
 
-READ_VERSIONS = (2, 3, SCHEMA_VERSION)  # 2 lacks the slip disturbance; 3 may have where predictions start
+from slipwise.models.body_force import force_names
+from slipwise.models.car import CarSection, car_rows, older_car
+from slipwise.models.limits import LimitsSection, limit_rows
+from slipwise.models.parameter_table import stage_of
+from slipwise.models.renamed_keys import RenamedKeys, with_new_keys
+from slipwise.models.schema import SCHEMA_VERSION, Parameter
+
+Floats = NDArray[np.float64]
+
+# 2 lacks the slip disturbance; 3 may have where predictions start; 4 has limits and a car as sections.
+READ_VERSIONS = (2, 3, 4, SCHEMA_VERSION)
 
 #: Keys of settings that have another name since version 0.2, in a settings file and in a model's provenance.
 RENAMED_SETTINGS: RenamedKeys = {
@@ -47,9 +57,53 @@ def upgraded(content: Mapping[str, object]) -> dict[str, object]:
 
     What is not known here stays as it is, so that the schema refuses it by its name.
     """
-    kept = {key: value for key, value in content.items() if key not in _GONE}
-    result: dict[str, object] = {key: _named(value) for key, value in _renamed(kept).items()}
-    return result | {"slipwise_model": SCHEMA_VERSION}
+    kept = {
+        key: value for key, value in content.items() if key not in _GONE or content["slipwise_model"] == 4
+    }
+    result: dict[str, object] = kept
+    if content.get("slipwise_model") != 4:
+        result = {key: _named(value) for key, value in _renamed(kept).items()}
+    return _in_one_table(result) | {"slipwise_model": SCHEMA_VERSION}
+
+
+def _in_one_table(content: dict[str, object]) -> dict[str, object]:
+    """The same with limits and the curves of a car as rows of its parameters.
+
+    Raises:
+        ValidationError: such a section is wrong.
+    """
+    rows, covariance = content.get("parameters"), content.get("covariance")
+    limits, car = content.pop("limits", None), content.pop("car", None)
+    if not isinstance(rows, list) or not isinstance(covariance, list):
+        return content
+    force = content.get("body_force")
+    frame = force.get("frame") if isinstance(force, dict) else None
+    names = force_names(frame) if frame in ("body", "world") else ()
+    content["parameters"] = [
+        {**row, "stage": stage_of(str(row.get("name")), names)} if isinstance(row, dict) else row
+        for row in rows
+    ]
+    if limits is not None:
+        section = LimitsSection.model_validate(limits)
+        content["limit_gains"] = [section.gain_v, section.gain_omega]
+        found = limit_rows(section)
+        _add(content, found, np.diag([row.std**2 for row in found]))
+    if car is not None:
+        _add(content, *car_rows(older_car(CarSection.model_validate(car))))
+    return content
+
+
+def _add(content: dict[str, object], rows: list[Parameter], covariance: Floats) -> None:
+    """Add rows that were learned apart; the schema refuses a covariance of another shape."""
+    before, old = content["parameters"], content["covariance"]
+    assert isinstance(before, list)
+    assert isinstance(old, list)
+    beside = [0.0] * len(rows)
+    content["parameters"] = [*before, *(row.model_dump() for row in rows)]
+    content["covariance"] = [
+        *([*row, *beside] if isinstance(row, list) else row for row in old),
+        *([0.0] * len(old) + row for row in covariance.tolist()),
+    ]
 
 
 def _renamed(content: dict[str, object]) -> dict[str, object]:

@@ -9,10 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.models.axes import drive_axes
+from slipwise.models.car import drawn_cars
 from slipwise.models.model import Model
 from slipwise.planning.rollout import check_threads, checked_commands, uncertain
 from slipwise.planning.start import Start
-from slipwise.planning.throttle import behind_curves
+from slipwise.planning.throttle import behind_curves, reach_of
 
 
 def sample_futures(  # noqa: PLR0913  (all but the first three are options)
@@ -51,13 +52,21 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
             f"{samples} samples from seed {seed} cannot be drawn",
             advice="use at least 1 sample, and a seed from 0",
         )
-    numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start, threads)
+    begin = Start() if start is None else start
     rollouts, periods = numbers.shape[:2]
-    result = np.empty((3, samples, periods, rollouts))
-    try:
-        widened = uncertain(model, dt, begin, dt * periods)
-        starts = begin.in_core(rollouts, drive_axes(model))
-        _core.sample_futures(widened, numbers, starts, seed, result, threads)
-    except (ValueError, TypeError) as problem:
-        raise SettingsError(str(problem)) from problem
-    return result
+    cars: list[_core.CarCurves | None] = [None]
+    if model.car is not None:  # each sample has a car of its own
+        deviations = model.car.deviations(reach_of(numbers, begin))
+        cars = [*drawn_cars(model.table, deviations, samples, seed)]
+    results = []
+    for k, car in enumerate(cars):
+        result = np.empty((3, samples // len(cars), periods, rollouts))
+        twists, driven = behind_curves(model, numbers, dt, begin, threads, car)
+        try:
+            widened = uncertain(model, dt, driven, dt * periods)
+            starts = driven.in_core(rollouts, drive_axes(model))
+            _core.sample_futures(widened, twists, starts, seed + k, result, threads)
+        except (ValueError, TypeError) as problem:
+            raise SettingsError(str(problem)) from problem
+        results.append(result)
+    return results[0] if len(results) == 1 else np.concatenate(results, axis=1)

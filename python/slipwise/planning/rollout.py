@@ -18,7 +18,7 @@ from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.device import gpu_of
 from slipwise.planning.start import Start
-from slipwise.planning.throttle import behind_curves
+from slipwise.planning.throttle import behind_curves, curve_covariance
 from slipwise.prediction import student_at
 from slipwise.terrain_ahead import slip_ahead
 
@@ -95,7 +95,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     numbers = checked_commands(model, commands, dtype)
     check_threads(threads)
     warn_of_unseen_speeds(model, numbers, stacklevel=2)
-    numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start, threads)
+    asked, at_start = numbers, Start() if start is None else start
+    numbers, begin = behind_curves(model, asked, dt, at_start, threads)
     wanted = _wanted(outputs, costmap)
     rollouts, periods = numbers.shape[:2]
     buffers = {
@@ -125,7 +126,19 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
             _core.instruction_levels()[-1] if level is None else level,
             gpu,
         )
-        spread = _covariance(model, numbers, dt, begin, threads) if covariance else None
+        spread = None
+        if covariance:
+
+            def paths(twists: Numbers, begun: Start) -> Numbers:
+                path = np.empty((3, periods, rollouts))
+                begun_in_core, level = begun.in_core(rollouts, axes), _core.instruction_levels()[-1]
+                _core.rollout_batch(
+                    program, twists, begun_in_core, path, None, None, None, threads, level, None
+                )
+                return np.asarray(path)
+
+            of_curves = curve_covariance(model, asked, dt, at_start, paths)
+            spread = _covariance(model, numbers, dt, begin, threads, of_curves)
     except (ValueError, TypeError, RuntimeError) as problem:
         raise SettingsError(str(problem)) from problem
     return Rollouts(covariance=spread, **buffers)
@@ -181,8 +194,13 @@ def uncertain(model: Model, dt: float, start: Start, horizon: float) -> _core.Un
     return _core.UncertainModel(model.motion, parameters, *spread, *setting)
 
 
-def _covariance(
-    model: Model, commands: Numbers, dt: float, start: Start, threads: int
+def _covariance(  # noqa: PLR0913  (of one rollout)
+    model: Model,
+    commands: Numbers,
+    dt: float,
+    start: Start,
+    threads: int,
+    of_curves: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     rollouts, periods = commands.shape[:2]
     result = np.empty((6, periods, rollouts))
@@ -191,8 +209,8 @@ def _covariance(
     _core.rollout_covariance(unit, commands.astype(np.float64), starts, result, threads)
     at_one_period = student_at(model, dt).inflation
     inflation = np.array([student_at(model, dt * (k + 1)).inflation / at_one_period for k in range(periods)])
-    result *= inflation[:, None]
-    return result
+    total: NDArray[np.float64] = result * inflation[:, None] + of_curves
+    return total
 
 
 def _wanted(outputs: Collection[str], costmap: Costmap | None) -> frozenset[str]:

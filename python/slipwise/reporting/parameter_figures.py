@@ -65,13 +65,13 @@ def parameter_figures(
         marks: shapes to draw over each figure.
     """
     model = contents.calibration.model
-    known = {parameter.name: parameter for parameter in model.content.parameters}
-    slip = [parameter.name for parameter in model.content.parameters[: model.motion.slip_size]]
+    known = {row.name: row for row in model.vector.rows}
+    slip = model.vector.names[: model.motion.slip_size]
     names = _chosen(known, course.names, slip)
     if not names:
         return ""
-    physical = physical_parameters(model)[: len(known)]  # limits follow
-    identified = {name for name, p in zip(known, physical, strict=True) if p.identified}
+    physical = {p.name: p for p in physical_parameters(model)}
+    identified = {name for name in known if physical[physical_name(name)].identified}
     figures = [
         _figure(contents, course, (known[name], name in identified), (f"{key}-{place}", list(marks))).html()
         for place, name in enumerate(names, start=1)

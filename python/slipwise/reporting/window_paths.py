@@ -123,7 +123,7 @@ def _sensor(contents: Contents) -> tuple[float, float, float]:
 def _known_parameters(contents: Contents, window: ChosenWindow) -> Floats | None:
     """Return the parameters learned until one horizon before the start, None where that is not recorded."""
     history, model = contents.calibration.history, contents.calibration.model
-    if history is None or list(history.names) != [parameter.name for parameter in model.content.parameters]:
+    if history is None or list(history.names) != model.vector.names:
         return None
     until = window.t_start - (contents.longest_horizon or 0.0) + _core.SAME_STAMP
     learned = np.flatnonzero(

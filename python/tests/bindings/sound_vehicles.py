@@ -21,14 +21,33 @@ def _layout() -> _core.WheelLayout:
     return _core.WheelLayout(wheels, 0.02, 0.02, (-0.5, 0.0))
 
 
+def _car() -> _core.CarCurves:
+    curve = _core.KnotCurve([-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.1, 0.0, 0.1])
+    car = _core.CarCurves(curve, curve, 0.3, 0.1, 0.1, 0.1)
+    return car.with_spread(0.01 * np.eye(10), np.array([1.0, 0.0, 1.0, 1.0, 0.1, 1.0, 0.5, 0.2, 0.3, 0.2]))
+
+
+def _input_spread() -> _core.InputSpread:
+    return _car().spread(
+        _core.InputHistory(*(np.array([value]) for value in (0.0, 0.5, 0.0, 0.2))), 0.0, None
+    )
+
+
 #: Sound objects by the name of their type.
-VEHICLE_OBJECTS: dict[str, Callable[[], Any]] = {"Wheel": lambda: _wheel(0.0, 0.3), "WheelLayout": _layout}
+VEHICLE_OBJECTS: dict[str, Callable[[], Any]] = {
+    "Wheel": lambda: _wheel(0.0, 0.3),
+    "WheelLayout": _layout,
+    "CarCurves": _car,
+    "InputSpread": _input_spread,
+}
 
 #: Sound arguments by function and parameter.
 VEHICLE_ARGUMENTS: dict[str, Callable[[], Any]] = {
     "Wheel.__init__ behind_hinge": lambda: False,
     "WheelLayout.__init__ wheels": lambda: [_wheel(0.0, 0.3), _wheel(0.0, -0.3)],
     "car_twists out": lambda: np.zeros((2, 4, 2)),
+    "CarCurves.with_spread covariance": lambda: 0.01 * np.eye(10),
+    "CarCurves.with_spread prior_std": lambda: np.ones(10),
     "Wheel.__init__ pivot": lambda: None,
     "WheelLayout.twists hinge": lambda: np.full((3, 2), 0.1),
 }

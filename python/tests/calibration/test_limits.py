@@ -21,7 +21,7 @@ from slipwise.export.parameter_file import Entry
 from slipwise.logs import open_log
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
 from slipwise.models import Model, load_model
-from slipwise.models.schema import AxisLimitsSection, LearnedLimit, LimitsSection
+from slipwise.models.limits import AxisLimitsSection, LearnedLimit, LimitsSection
 from slipwise.planning import Controller, ReferencePath, Start, rollout, sample_futures
 from slipwise.planning.mppi import learned_motions
 from slipwise.prediction import predict
@@ -137,7 +137,7 @@ def test_a_model_with_limits_plans_as_it_predicts(model: Model) -> None:
         path = predict(model, rows, horizon=5.0, start=0.0, initial=(0.0, 0.0))
         # Where no ramp is left, predictions take longer steps while a lag closes.
         assert found.path[:, -1, 0] == pytest.approx(path.poses[-1], abs=1e-4)
-        free = Model(model.content.model_copy(update={"limits": None}))
+        free = model.with_table(model.table.without("limits"), limit_gains=None)
         apart = predict(free, rows, horizon=5.0, start=0.0, initial=(0.0, 0.0)).poses[-1] - path.poses[-1]
         assert np.hypot(apart[0], apart[1]) > 0.01
         futures = sample_futures(model, commands[None], 0.05, samples=200, seed=1, start=start)

@@ -66,7 +66,7 @@ def test_what_is_pushed_is_what_calibrate_learns(log: Log, input_name: str) -> N
     assert model.content.noise == learned.content.noise
     assert model.content.verdict.held_out == learned.content.verdict.held_out
     assert model.content.verdict.advice == learned.content.verdict.advice
-    assert model.content.limits == learned.content.limits
+    assert model.limits_section == learned.limits_section
     assert model.content.range == learned.content.range
 
 

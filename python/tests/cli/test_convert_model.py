@@ -18,7 +18,7 @@ def test_an_older_model_is_written_beside_it(tmp_path: Path) -> None:
     before = source.read_bytes()
     assert run(["convert", str(source)]) == 0
     assert source.read_bytes() == before
-    written = tmp_path / "husky-schema4.yaml"
+    written = tmp_path / "husky-schema5.yaml"
     assert written.read_text(encoding="utf-8") == model.to_yaml()
     assert load_model(written).content == model.content
 
@@ -26,7 +26,7 @@ def test_an_older_model_is_written_beside_it(tmp_path: Path) -> None:
 def test_a_model_goes_where_it_is_asked_and_not_over_itself(tmp_path: Path) -> None:
     source = older(make_model(MODELS["wheels"]), 2, tmp_path / "a.yaml")
     assert run(["convert", str(source), "-o", str(tmp_path / "b.yaml")]) == 0
-    assert load_model(tmp_path / "b.yaml").content.slipwise_model == 4
+    assert load_model(tmp_path / "b.yaml").content.slipwise_model == 5
     assert run(["convert", str(source), "-o", str(source)]) == 2
 
 

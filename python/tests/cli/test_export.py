@@ -152,7 +152,7 @@ def test_bad_use_is_one_line_with_exit_code_2_and_leaves_nothing(
     for arguments, message in REFUSED.values():
         with subtests.test(arguments=arguments, message=message):
             Path("other.yaml").write_text(
-                wheel.read_text().replace("slipwise_model: 4", "slipwise_model: 99")
+                wheel.read_text().replace("slipwise_model: 5", "slipwise_model: 99")
             )
             Path("text.yaml").write_text("just words\n")
             before = left_in(Path())

@@ -101,7 +101,7 @@ def test_a_route_over_the_edge_of_the_map_is_refused(slipwise: Slipwise, argumen
 
 
 def test_a_model_of_another_schema_version_is_refused(slipwise: Slipwise, arguments: list[object]) -> None:
-    text = Path("model.yaml").read_text(encoding="utf-8").replace("slipwise_model: 4", "slipwise_model: 9")
+    text = Path("model.yaml").read_text(encoding="utf-8").replace("slipwise_model: 5", "slipwise_model: 9")
     Path("model.yaml").write_text(text, encoding="utf-8")
     result = slipwise(*arguments, "--from", START, "--to", GOAL)
     assert result.code == 2

@@ -19,7 +19,7 @@ from slipwise.export import ExportOptions, export_model
 from slipwise.export.actuator import actuator_of
 from slipwise.export.learned_number import LearnedNumbers
 from slipwise.models import Model, ModelFile
-from slipwise.models.schema import LearnedLimit
+from slipwise.models.limits import SEPARATION, LearnedLimit
 
 WHEEL = named("edd-2", lon__V=-0.1, ang__w=-0.4)
 COMMAND = replace(WHEEL, commands=True)
@@ -117,13 +117,9 @@ GIVEN = {
 def test_of_a_model_that_knows_nothing_no_learned_number_is_written(subtests: pytest.Subtests) -> None:
     for target, made, options in EVERYTHING:
         with subtests.test(target=target, made=made, options=options):
-            model = changed(made, BADLY, windows=10)
-            if made.limits is not None:
-                dump = model.content.model_dump(mode="json")
-                for axis in ("speed", "yaw_rate", "side"):
-                    for limit in filter(None, dump["limits"][axis].values()):
-                        limit["std"] = 1.3e7
-                model = Model(ModelFile.model_validate(dump))
+            limits = make_model(made).table.of("limits").names
+            badly = BADLY | {name: {"std": 1.3e7} for name in limits if name != SEPARATION}
+            model = changed(made, badly, windows=10)
             before = set(exported(make_model(made), target, options).values)
             file = exported(model, target, options)
             left = {
@@ -181,11 +177,10 @@ def test_limits_of_the_sides_are_folded_into_those_of_the_body() -> None:
         "speed": {"slew_rate_up": 12.5},
         "side": {"slew_rate_up": 1.67, "slew_rate_down": 2.0, "saturation": 1.2},
     }
-    content = make_model(replace(COMMAND, limits=limits, body=FAST)).content.model_dump(mode="json")
-    content["limits"]["speed"]["slew_rate_up"]["std"] = 1.3e7
-    model = Model(ModelFile.model_validate(content))
+    made = replace(COMMAND, limits=limits, body=FAST)
+    model = changed(made, {"limits.speed.slew_rate_up": {"std": 1.3e7}})
     values = {k.removeprefix("FollowPath."): v for k, v in exported(model, "mppi", KILTED).values.items()}
-    separation = content["limits"]["wheel_separation"]
+    separation = model[SEPARATION].value
     assert values["ax_max"] == pytest.approx(0.9 * 1.67)
     assert values["ax_min"] == pytest.approx(-0.9 * 2.0)
     assert values["az_max"] == pytest.approx(0.6 * 2.0 * 1.67 / separation)
@@ -203,9 +198,8 @@ def test_a_body_faster_than_its_sides_is_not_counted_on() -> None:
 
 def test_the_c_header_says_what_is_not_identified_and_stays_the_model() -> None:
     made = replace(COMMAND, limits={"speed": {"slew_rate_up": 12.5, "saturation": 1.0}})
-    content = changed(made, {"log_time_constant_v": {"std": 0.9}}).content.model_dump(mode="json")
-    content["limits"]["speed"]["slew_rate_up"]["std"] = 1.3e7
-    model = Model(ModelFile.model_validate(content))
+    badly = {"log_time_constant_v": {"std": 0.9}, "limits.speed.slew_rate_up": {"std": 1.3e7}}
+    model = changed(made, badly)
     lines = exported(model, "c-header").text.splitlines()
     (lag,) = (line for line in lines if line.startswith("#define SLIPWISE_TIME_CONSTANT_V "))
     (other,) = (line for line in lines if line.startswith("#define SLIPWISE_TIME_CONSTANT_OMEGA "))

@@ -30,11 +30,9 @@ WRONG: dict[str, str] = {
     "the lags stand behind the kinematics": """
         steering:predict steering:rollout steering:c-header steering:to-mppi steering:to-px4
         steering:to-ardupilot""",
-    "a car's lags are not among what is shown": "throttle:show",
-    "a car's curves are not compared": "throttle-tighter:compare throttle:fleet throttle-tighter:fleet",
     "a learner asked for a path has no limits of the drive yet": "limits:ahead",
     "four robots of two drives each scatter too much for one to stand out": """
-        steering:fleet sideways-vehicle:fleet""",
+        steering:fleet sideways-vehicle:fleet throttle:fleet throttle-tighter:fleet""",
     "a path is of poses as they are stamped, late": "clock:predict clock:rollout clock:c-header clock:ahead",
 }
 

@@ -30,12 +30,14 @@ from slipwise.segments import source_names
 
 def same(model: Model, other: Model, within: float) -> None:
     """Hold two models to be one: the same parameters within some standard deviations, the same verdict."""
-    names, others = ([p.name for p in each.content.parameters] for each in (model, other))
+    names, others = model.table.names, other.table.names
     assert names == others, f"parameters are {others}, not {names}"
-    if len(names):
-        off = np.abs(model.mean - other.mean) / np.sqrt(np.diag(model.covariance))
-        k = int(np.argmax(off))
-        assert off[k] <= within, f"{names[k]} is {off[k]:.2g} standard deviations off"
+    far = [
+        f"{row.name} is {abs(now - row.value) / row.std:.2g} standard deviations off"
+        for row, now in zip(model.table.rows, other.table.values.tolist(), strict=True)
+        if abs(now - row.value) > within * row.std
+    ]
+    assert not far, ", ".join(far)
     assert model.verdict.good == other.verdict.good, other.verdict.sentence
 
 

@@ -7,14 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sample_cars import true_car, write_car_log
+from sample_cars import changed_car, true_car, write_car_log
 
 import slipwise as sw
+from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.export import export_model
 from slipwise.logs import Log, LogOptions
-from slipwise.models.car import car_section, core_car
-from slipwise.models.schema import KnotCurveSection
+from slipwise.models.car import KnotCurveSection
+from slipwise.models.difference import differences
 from slipwise.planning import Planner, curvature_map, lattice_primitives
 
 
@@ -27,11 +28,6 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
 @pytest.fixture(scope="module")
 def model(log: Log) -> sw.Model:
     return sw.calibrate(log).model
-
-
-def test_a_section_goes_to_the_core_and_back() -> None:
-    section = car_section(true_car())
-    assert car_section(core_car(section)) == section
 
 
 def test_knots_that_do_not_increase_are_refused() -> None:
@@ -80,3 +76,69 @@ def test_what_takes_speeds_refuses_such_a_model(model: sw.Model) -> None:
     for use in (Planner, curvature_map, lattice_primitives):
         with pytest.raises(ModelError, match="throttle and steering"):
             use(model)
+
+
+def learned(folder: Path, seed: int, *, car: _core.CarCurves | None = None, fastest: float = 0.8) -> sw.Model:
+    path = write_car_log(folder / f"car-{seed}.csv", 120.0, seed, car=car, fastest=fastest)
+    return sw.calibrate(sw.open_log(path, options=LogOptions(vehicle="dart"))).model
+
+
+def test_another_speed_or_another_turn_differs_and_the_same_car_does_not(
+    model: sw.Model, tmp_path: Path
+) -> None:
+    def names(other: sw.Model) -> list[str]:
+        return [each.name for each in differences(model, other) if each.different]
+
+    assert not names(learned(tmp_path, 2))
+    assert "speed per throttle" in names(learned(tmp_path, 3, car=changed_car(speed=0.7)))
+    assert "curvature per steering" in names(learned(tmp_path, 4, car=changed_car(curvature=1.4)))
+
+
+def test_what_is_shown_of_a_car_is_its_curves_and_lags(model: sw.Model) -> None:
+    said = str(sw.summarise(model))
+    assert "Follows commands at once" not in said
+    assert "Follows the throttle with a time constant of 0.4" in said
+    assert "At a throttle of 0.8 it drives 2.3" in said or "At a throttle of 0.6 it drives 2.0" in said
+    span = model.content.range
+    assert span.throttle == pytest.approx([0.0, 0.8], abs=0.1)
+    assert span.speed[1] == pytest.approx(2.3, abs=0.2)
+
+
+def squared(model: sw.Model, car: _core.CarCurves, throttle: float, steering: float) -> float:
+    """How far the true pose after 3 s from rest is from what is predicted, squared, in its own covariance."""
+    t = np.arange(0.0, 3.0, 0.05)
+    told = np.full(len(t), throttle), np.full(len(t), steering)
+    twists = car.twists(_core.InputHistory(t, told[0], np.zeros(len(t)), told[1]), 0.0, None).rows()
+    pose = _core.Pose2(0.0, 0.0, 0.0)
+    for _, v, vy, omega in twists.tolist()[: len(t)]:
+        pose = _core.compose(pose, _core.exp(np.array([v, vy, omega]) * 0.05))
+    path = sw.predict(model, np.column_stack((t, *told)), horizon=3.0)
+    off = pose.vector() - path.end
+    return float(off @ np.linalg.solve(path.covariance[-1], off))
+
+
+def test_a_throttle_that_was_never_driven_is_as_uncertain_as_its_curve(tmp_path: Path) -> None:
+    model = learned(tmp_path, 7, fastest=0.4)
+    assert model.car is not None
+
+    def wide(throttle: float) -> float:
+        path = sw.predict(model, [(0.0, throttle, 0.0)], horizon=4.0)
+        return float(np.sqrt(path.covariance[-1, 0, 0]))
+
+    std = dict(zip(model.car.speed.at, model.car.speed.std, strict=True))
+    assert wide(0.3) < 0.5
+    assert wide(1.0) > 2.0 * std[1.0]
+
+
+@pytest.mark.slow
+def test_the_truth_lies_within_what_is_predicted_at_throttles_driven_and_not(tmp_path: Path) -> None:
+    rng = np.random.default_rng(5)
+    inside, beyond = [], []
+    for seed in range(20, 32):
+        car = changed_car(*rng.uniform(0.6, 1.4, 2))
+        model = learned(tmp_path, seed, car=car, fastest=0.5)
+        for throttles, found in (((0.15, 0.5), inside), ((0.6, 1.0), beyond)):
+            found += [squared(model, car, rng.uniform(*throttles), rng.uniform(-0.9, 0.9)) for _ in range(10)]
+    within = {name: np.mean(np.array(each) < 7.81) for name, each in (("in", inside), ("beyond", beyond))}
+    assert all(share > 0.85 for share in within.values()), within
+    assert np.median(inside) > 0.1  # not by being too wide

@@ -114,7 +114,7 @@ def test_a_file_of_the_schema_before_is_read_and_its_slip_does_not_wander(
     assert model.covariance_over(1.0).tobytes() == model.covariance.tobytes()
     again = load_model(model.save(tmp_path / "m.yaml"))
     assert again.content == model.content
-    assert again.content.slipwise_model == 4
+    assert again.content.slipwise_model == 5
 
 
 def test_where_predictions_start_is_dropped_from_a_file_of_the_schema_before(
@@ -139,8 +139,14 @@ def set_key(path: str, value: object) -> Callable[[Content], None]:
 WRONG = {
     "unknown key": (set_key("colour", "red"), "colour: there is no such key"),
     "unknown key in depth": (set_key("noise.colour", 1.0), r"noise\.colour: there is no such key"),
-    "newer schema": (set_key("slipwise_model", 5), "schema version 5, this slipwise reads 2 and 3 and 4"),
-    "older schema": (set_key("slipwise_model", 1), "schema version 1, this slipwise reads 2 and 3 and 4"),
+    "newer schema": (
+        set_key("slipwise_model", 6),
+        "schema version 6, this slipwise reads 2, 3, 4 and 5",
+    ),
+    "older schema": (
+        set_key("slipwise_model", 1),
+        "schema version 1, this slipwise reads 2, 3, 4 and 5",
+    ),
     "no schema": (set_key("slipwise_model", None), "schema version None"),
     "schema is a flag": (set_key("slipwise_model", True), "schema version True"),
     "schema is text": (set_key("slipwise_model", "2"), "schema version '2'"),

@@ -9,10 +9,10 @@ from pydantic import BaseModel, ValidationError
 from sample_models import Made, make_model
 
 from slipwise import _core
+from slipwise.models.car import KnotCurveSection
 from slipwise.models.schema import (
     LARGEST,
     HeldOut,
-    KnotCurveSection,
     ModelFile,
     SurfaceBasis,
     SurfaceMemorySection,
@@ -28,6 +28,15 @@ BASIS = {
     "variance_scale": [1.0, 1.0, 1.0],
 }
 MEMORY = {"observed": 3, "prior_speeds": [1.0, 1.0], "weights": {"edd-2": 1.0}, "bases": {"edd-2": BASIS}}
+LIMIT = {
+    "name": "limits.speed.saturation",
+    "stage": "limits",
+    "unit": "m/s",
+    "value": 1.0,
+    "std": 0.1,
+    "prior_std": 1.0,
+    "identifiable": True,
+}
 SURFACE = {
     "name": "sand",
     "seconds": 9.0,
@@ -64,13 +73,13 @@ WRONG: list[tuple[type[BaseModel], dict[str, object], str]] = [
     (
         ModelFile,
         {
-            "limits": {name: {} for name in ("speed", "yaw_rate", "side")}
-            | dict.fromkeys(("wheel_separation", "gain_v", "gain_omega"), 1.0)
-            | {"wheel_separation_std": 0.0},
-            "dynamics": False,
+            "parameters": [LIMIT],
+            "covariance": [[0.01]],
+            "limit_gains": [1.0, 1.0],
         },
         "limits are of commands, and this model has no lag and delay of commands",
     ),
+    (ModelFile, {"limit_gains": [1.0, 1.0]}, "limit_gains belong to limits of the drive"),
 ]
 
 

@@ -19,7 +19,7 @@ from slipwise.calibration.settings import Settings
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.logs import Log, open_log
-from slipwise.models import schema
+from slipwise.models import Model, schema
 
 STREAMS = {"command": "command", "wheel": "wheels"}
 BOTH = ("wheel", "command")
@@ -119,12 +119,13 @@ def same_model(
 ) -> None:
     """Both hold the same, to the last bit; `limits` are what was found of the actuator's."""
     kept = None if limits is None else limits.posterior
-    assert (content.limits is not None) == (kept is not None)
+    assert (content.limit_gains is not None) == (kept is not None)
+    table = Model(content).vector
     posterior, noise = kept or learned.motion, content.noise
-    assert [p.name for p in content.parameters] == [info.name for info in posterior.model.parameters]
-    assert [p.value for p in content.parameters] == posterior.estimate.mean.tolist()
-    assert [p.prior_std for p in content.parameters] == list(posterior.prior_std)
-    assert content.covariance == posterior.estimate.covariance.tolist()
+    assert table.names == [info.name for info in posterior.model.parameters]
+    assert table.values.tolist() == posterior.estimate.mean.tolist()
+    assert [p.prior_std for p in table.rows] == list(posterior.prior_std)
+    assert table.covariance.tolist() == posterior.estimate.covariance.tolist()
     assert noise.variance_scale == list(posterior.noise_scale)
     assert list(content.weights.values()) == list(posterior.basis_weights)
     students = {h: s for h, s in zip(JUDGING_HORIZONS, learned.students, strict=True) if h in noise.student_t}

@@ -121,7 +121,7 @@ def test_a_gpu_gives_the_poses_of_the_processor(
 ) -> None:
     if reason := _core.why_no_gpu():
         pytest.skip(reason)
-    if model.content.limits is not None:
+    if model.limits is not None:
         with pytest.raises(SettingsError, match="on the processor only"):
             rollout(model, commands, DT, dtype=dtype, device="cuda")
         return

@@ -69,6 +69,20 @@ def test_futures_of_a_car_spread_about_its_rollouts(model: sw.Model) -> None:
     assert drawn.std(axis=1)[:2, -1].max() > 1e-3
 
 
+def test_a_throttle_that_was_never_driven_is_unsure_in_rollouts_and_futures_as_in_predict(
+    model: sw.Model,
+) -> None:
+    commands, start = np.tile([1.0, 0.2], (1, PERIODS, 1)), Start(past=np.zeros((4, 2)))
+    rows = np.vstack(([-1.0, 0.0, 0.0], np.column_stack((DT * np.arange(PERIODS), commands[0]))))
+    ahead = sw.predict(model, rows, horizon=DT * PERIODS, start=0.0).covariance[-1]
+    found = rollout(model, commands, DT, start=start, covariance=True).covariance
+    assert found is not None
+    drawn = sample_futures(model, commands, DT, samples=400, seed=2, start=start)[:, :, -1, 0]
+    assert np.sqrt(ahead[0, 0]) > 0.3
+    assert np.sqrt(found[0, -1, 0]) == pytest.approx(np.sqrt(ahead[0, 0]), rel=0.1)
+    assert drawn[0].std() == pytest.approx(np.sqrt(ahead[0, 0]), rel=0.2)
+
+
 def test_speeds_in_place_of_throttle_are_refused(model: sw.Model) -> None:
     with pytest.raises(SettingsError, match="within"):
         rollout(model, 2.0 * np.ones((1, 4, 2)), DT)

@@ -84,7 +84,7 @@ def _run(place: int, name: str) -> Run:
 def _calibration(runs: int) -> Calibration:
     content = ModelFile.model_validate(
         {
-            "slipwise_model": 4,
+            "slipwise_model": 5,
             "input": "command",
             "slip": {"basis": "edd-2", "lon": ["V"], "lat": [], "ang": ["w"]},
             "dynamics": False,
@@ -92,6 +92,7 @@ def _calibration(runs: int) -> Calibration:
             "parameters": [
                 {
                     "name": "lon.V",
+                    "stage": "slip",
                     "unit": "m/s per V",
                     "value": -0.049,
                     "std": 0.004,
@@ -100,6 +101,7 @@ def _calibration(runs: int) -> Calibration:
                 },
                 {
                     "name": "ang.w",
+                    "stage": "slip",
                     "unit": "rad/s per w",
                     "value": -0.348,
                     "std": 0.01,

@@ -3,6 +3,8 @@
 // (derivations/sensors.md).
 #pragma once
 
+#include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -20,6 +22,12 @@ struct KnotCurve {
   double operator()(double x) const;
 };
 
+/// How sure the numbers of a car are, in the order of `car_numbers`.
+struct CarSpread {
+  Eigen::MatrixXd covariance;  ///< [numbers, numbers]
+  Eigen::VectorXd prior_std;   ///< [numbers] before it drove; 0 where it is not stated
+};
+
 /// lag V' = speed(throttle) - V (1 + cornering_drag |omega|);
 /// omega = V curvature(steering) / (1 + understeer V^2), steering through a lag of its own.
 struct CarCurves {
@@ -29,7 +37,27 @@ struct CarCurves {
   double steering_lag = 0.0;    ///< [s]
   double cornering_drag = 0.0;  ///< [s/rad]
   double understeer = 0.0;      ///< [s^2/m^2]
+  /// Without it the numbers are taken as exact.
+  std::shared_ptr<const CarSpread> spread = {};
 };
+
+/// All numbers of a car: speed and curvature at the knots, lag, steering lag, drag of cornering, understeer.
+Eigen::VectorXd car_numbers(const CarCurves& car);
+
+/// What inputs may be instead of what they are expected to be, along each direction of their uncertainty.
+struct InputSpread {
+  std::vector<InputHistory> deviated;
+  double step = 1.0;  ///< of a deviation, in standard deviations
+};
+
+/// A car's deviations of `InputSpread::step` standard deviations, along independent directions that matter under these
+/// commands (v is the throttle, omega the steering). They are of what the car never showed, which is the prior's part
+/// of the covariance: what noise leaves of the rest is in the errors of predictions, by which these are judged.
+struct CarDeviations {
+  std::vector<CarCurves> cars;
+  double step = 1.0;
+};
+CarDeviations car_deviations(const CarCurves& car, const InputHistory& commands);
 
 /// What a car does now.
 struct CarState {

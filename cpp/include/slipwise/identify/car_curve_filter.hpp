@@ -39,6 +39,10 @@ class CurveBank {
   const Eigen::VectorXd& weights() const { return weights_[best()]; }
   /// Of the weights, as if none were bounded: rather too large.
   Eigen::MatrixXd covariance() const;
+  /// The same before anything was learned.
+  Eigen::MatrixXd prior_covariance() const { return precision_.cwiseInverse().asDiagonal(); }
+  /// Of each candidate, by the errors of what was predicted.
+  Eigen::VectorXd log_likelihoods() const;
 
   /// \throws std::invalid_argument where a loaded one is none that `made` could have become.
   void check_loaded(const CurveBank& made) const;
@@ -135,6 +139,7 @@ class CarCurveFilter {
   void step(const BodyTwist& command, double duration, const BodyTwist& moved, Means& means);
   void learn(const Means& means, const BodyTwist& twist);
   void set_curves();
+  CarSpread car_spread(const Eigen::MatrixXd& by_speed, const Eigen::MatrixXd& by_turn) const;
 
   CarCurves curves_;
   CurveBank speed_, turn_;

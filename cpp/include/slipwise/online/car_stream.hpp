@@ -35,6 +35,8 @@ class CarStream {
   /// Twists over [start, end] [s] and some seconds before, by the held curves or those known at `known` [s]. The speed
   /// at the start is what poses until then tell.
   InputHistory inputs(double start, double end, double known, const std::vector<InputSample>& future = {}) const;
+  /// The same of cars that differ from it along the directions of its uncertainty.
+  InputSpread spread(double start, double end, double known, const std::vector<InputSample>& future = {}) const;
   /// The same of a kinematic bicycle with the constant gains that fitted best until `known` [s].
   InputHistory baseline(double start, double end, double known) const;
   /// Commands as they were given.
@@ -56,6 +58,10 @@ class CarStream {
     CarCurves curves, straight;
   };
   const KnownCurves& known_at(double t) const;
+  /// By which inputs are made, where `known` [s] is known.
+  const CarCurves& car_at(double known) const { return follower_ ? follower_->curves() : known_at(known).curves; }
+  /// Twists over [start, end] [s] and some seconds before.
+  InputHistory twists(const CarCurves& car, const InputHistory& commands, double start, double end) const;
   CarState state_at(double t, double latency) const;
 
   Pose2 sensor_;

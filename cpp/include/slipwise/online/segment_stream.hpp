@@ -55,6 +55,7 @@ struct TargetSegment {
   DrivenSegment driven;
   std::optional<InputHistory> baseline = {};  ///< what the kinematic baseline does, where it is not the inputs
   std::array<std::size_t, 2> classes = {};    ///< of the noise of its poses, where sources are distinguished
+  InputSpread spread = {};                    ///< how the inputs may be else, where a car's curves make them
 };
 
 /// A segment between poses of one of several sources: it is learned where no better one covers the time.
@@ -137,6 +138,8 @@ class SegmentStream {
   /// The segment from now on over `horizon` [s], driven by `future` inputs. What is held for longer than any input that
   /// was measured is repeated, so that there are poses on the way.
   DrivenSegment segment_ahead(double horizon, const std::vector<InputSample>& future) const;
+  /// How the inputs of `segment_ahead` may be else, where a car's curves make them of the commands.
+  InputSpread spread_ahead(double horizon, const std::vector<InputSample>& future) const;
 
   /// The motion over [start, end] [s] with the inputs that came so far, those of the last `back` [s] before it
   /// included.

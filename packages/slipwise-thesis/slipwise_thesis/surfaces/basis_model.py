@@ -77,6 +77,7 @@ def as_basis_model(
     parameters = [
         Parameter(
             name=info.name,
+            stage="slip",
             unit=info.unit,
             value=value,
             std=sigma,
