@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import sys
 from collections.abc import Callable, Mapping
@@ -151,7 +152,7 @@ def _of_lines(table: LiveTable, options: LogOptions, source: Source, say: Callab
         name = "UDP"
         say(f"listening on UDP port {lines.port}")
     say(f"waiting for the first lines of {name}")
-    coming = lines.look()
+    coming = lines.look(table.duration or math.inf) if isinstance(lines, Udp) else lines.look()
     input_name = table.input or coming.input_name
     say(f"learning from {input_name}s{coming.words()}")
     return Robot(

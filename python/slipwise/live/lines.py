@@ -72,6 +72,9 @@ class LineReader:
             self._header = names
             self.columns.update(names)
             return []
+        if self._header is None and "t" in names:  # columns by number need no header
+            self._header = names
+            self.columns.update(names)
         if self._header is None:
             raise LogError(
                 "lines come before a header", advice="start with t,odo_v,odo_omega,x,y,yaw or the like"
@@ -121,7 +124,8 @@ class LineReader:
             return [RunStart(self._run)]
         filled = {name: value for name, value in content.items() if value is not None}
         names = self._rows.renamed(list(filled))
-        self.columns.update(names)
+        if len(self.columns) < MOST_BYTES:
+            self.columns.update(names)
         return self._of_row(dict(zip(names, filled.values(), strict=True)), names)
 
 

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import socket
 import threading
+import time
 
 from slipwise.errors import SettingsError
 from slipwise.live.coming import Coming, ComingSoon
@@ -65,10 +67,14 @@ class Udp:
         """The port that is listened on."""
         return int(self._socket.getsockname()[1])
 
-    def look(self) -> Coming:
-        """Wait for the first samples, and return what will come; `subscribe` delivers them all the same."""
-        soon = ComingSoon()
-        while not soon.enough:
+    def look(self, longest: float = math.inf) -> Coming:
+        """Wait for the first samples, and return what will come; `subscribe` delivers them all the same.
+
+        Args:
+            longest: s of the wall clock after which nobody waits any more.
+        """
+        soon, until = ComingSoon(), time.monotonic() + longest
+        while not soon.enough and time.monotonic() < until:
             samples = self._receive()
             self._looked_at += samples
             soon.take(samples)

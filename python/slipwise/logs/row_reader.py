@@ -124,9 +124,13 @@ class RowReader:
 
     def _unknown(self, kinds: Mapping[str, str]) -> Iterator[tuple[str, str]]:
         for name, of in kinds.items():
-            if not of and name not in self._further and name not in self._said:
-                self._said.add(name)
-                yield UNKNOWN, f"column {name[:40]!r} is none of a tidy log and is not used"
+            if of or name in self._further or name in self._said:
+                continue
+            if len(self._said) > _MOST_NAMES:
+                yield UNKNOWN, "ever more columns are none of a tidy log"
+                continue
+            self._said.add(name)
+            yield UNKNOWN, f"column {name[:40]!r} is none of a tidy log and is not used"
 
     def _read_command(self, view: _View, notes: list[str]) -> Iterator[Measurement]:
         found = command_columns(view, self._options, view.tally, notes)
@@ -236,7 +240,7 @@ class RowReader:
 
 _WHERE = "lines"
 _NOW = 1  # of the two rows of a view
-_MOST_HEADERS = 1000
+_MOST_HEADERS = _MOST_NAMES = 1000
 
 
 class _View:

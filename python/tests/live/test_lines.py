@@ -27,6 +27,7 @@ from slipwise.live.samples import (
     Unusable,
     Wheels,
 )
+from slipwise.logs import LogOptions
 
 
 def test_a_csv_line_holds_what_its_filled_cells_say() -> None:
@@ -146,3 +147,8 @@ def test_a_pose_that_is_repeated_is_held_unless_it_is_said_to_be_new() -> None:
     (held,) = reader.read(line % (2, ""))
     assert isinstance(held, Unusable)
     assert reader.read(line % (3, ', "pose_new": 1')) == [Pose(3.0, 1.0, 2.0, 3.0)]
+
+
+def test_lines_without_names_have_columns_by_number() -> None:
+    reader = LineReader(LogOptions(columns={"t": "0", "odo_v": "2", "odo_omega": "1"}))
+    assert reader.read("1.5,0.1,0.5") == [Wheels(1.5, 0.5, 0.1)]
