@@ -36,7 +36,7 @@ double best_seconds(int runs, F work) {
 // What the processor can do at most: independent chains of fused multiply-adds, lanes per second. A macro, since a
 // vector must be met first in a function that is compiled for its processor.
 #pragma GCC optimize("fp-contract=fast")
-#define CHAIN(i) actuator##i = actuator##i * factor + summand;
+#define CHAIN(i) chain##i = chain##i * factor + summand;
 #define PEAK(bytes)                                                                                           \
   typedef float Vector __attribute__((vector_size(bytes)));                                                   \
   const Vector factor = Vector{} + 0.999F;                                                                    \
