@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from statistics import NormalDist
 
 from slipwise.errors import ModelError
 from slipwise.models.car import curve_gains
@@ -24,6 +26,7 @@ class Difference:
     unit: str
     first: tuple[float, float] | None  # value and standard deviation
     second: tuple[float, float] | None
+    least: float = DIFFERENT  # standard deviations from which on it differs
 
     @property
     def z(self) -> float:
@@ -38,7 +41,7 @@ class Difference:
     @property
     def different(self) -> bool:
         """Whether both have it, and it differs beyond the reported uncertainty."""
-        return abs(self.z) >= DIFFERENT
+        return abs(self.z) >= self.least
 
 
 def differences(first: Model, second: Model) -> tuple[Difference, ...]:
@@ -67,7 +70,7 @@ def differences(first: Model, second: Model) -> tuple[Difference, ...]:
     for name in dict.fromkeys((*tables[0], *tables[1])):
         one, other = (table.get(name) for table in tables)
         unit = (one or other or tables[0][name]).unit
-        rows.append(Difference(name, unit, _estimate(one), _estimate(other)))
+        rows.append(Difference(name, unit, _estimate(one), _estimate(other), _least(name, tables)))
     return tuple(row for row in rows if row.first is not None or row.second is not None)
 
 
@@ -98,8 +101,8 @@ def _curve_rows(first: Model, second: Model) -> list[Difference]:
     gains = (curve_gains(model.table, model.content.range) for model in (first, second))
     ours, theirs = ({gain.name: gain for gain in each} for each in gains)
     return [
-        Difference(name, ours[name].unit, *((g.value, g.std) for g in (ours[name], theirs[name])))
-        for name in ours
+        Difference(name, one.unit, (one.value, one.std), (theirs[name].value, theirs[name].std))
+        for name, one in ours.items()
         if name in theirs
     ]
 
@@ -107,6 +110,16 @@ def _curve_rows(first: Model, second: Model) -> list[Difference]:
 def _paired(first: tuple[str, Gain], second: tuple[str, Gain]) -> Difference:
     one, other = ((g.value, g.std) if g.identified else None for _, g in (first, second))
     return Difference(first[0], "-", one, other)
+
+
+def _least(name: str, tables: Sequence[Mapping[str, PhysicalParameter]]) -> float:
+    """All values of one curve together are said to differ by chance as rarely as one number (Bonferroni)."""
+    curve, bracket, _ = name.partition("(")
+    if not bracket or not curve.startswith("car."):
+        return DIFFERENT
+    values = sum(each.startswith(f"{curve}(") for each in {*tables[0], *tables[1]})
+    normal = NormalDist()
+    return normal.inv_cdf(1.0 - normal.cdf(-DIFFERENT) / values)
 
 
 def _estimate(parameter: PhysicalParameter | None) -> tuple[float, float] | None:

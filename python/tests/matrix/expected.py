@@ -33,8 +33,6 @@ WRONG: dict[str, str] = {
     "a learner asked for a path has no limits of the drive yet": "limits:ahead",
     "four robots of two drives each scatter too much for one to stand out": """
         steering:fleet sideways-vehicle:fleet throttle:fleet throttle-tighter:fleet""",
-    "what a car's curves cannot hold lets two drives of one car differ": """
-        throttle:compare throttle-tighter:compare""",
     "a path is of poses as they are stamped, late": "clock:predict clock:rollout clock:c-header clock:ahead",
 }
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +49,7 @@ def test_models_that_differ_by_five_sigma_in_any_row_are_said_to_differ() -> Non
         table = model.table
         for i, row in enumerate(table.rows):
             moved = table.values.copy()
-            moved[i] += 5.0 * row.std
+            moved[i] += 5.0 * math.sqrt(2.0) * row.std  # of both together
             other = model.with_table(table.moved(moved, table.covariance))
             stages.add(row.stage)
             if physical_name(row.name) not in [d.name for d in differences(model, other) if d.different]:
