@@ -17,7 +17,7 @@ REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
     (lambda s: s.before is not None, "several-logs", "has no wheel input"),
     (lambda s: s.turns, "several-logs", "no run of the log has both"),
     (lambda s: s.name == "throttle-gyro", "calibrate", "cannot be learned from yaw rates alone"),
-    (lambda s: s.name == "force-world", "rollout mppi trajectory", "know no heading over the map"),
+    (lambda s: s.name == "force-world", "rollout mppi trajectory excite", "know no heading over the map"),
     (lambda s: any("estimator=" in each for each in s.settings), "replay lines pushed ahead", "whole logs"),
     (lambda s: s.robot.kind == "throttle", "mcap", "throttle and steering are not written as a bag"),
     (lambda s: s.name in ("gyro", "gyro-commands"), "mcap", "turns of a gyro alone are not written as a bag"),
@@ -32,7 +32,8 @@ WRONG: dict[str, str] = {
         steering:to-ardupilot""",
     "a learner asked for a path has no limits of the drive yet": "limits:ahead",
     "four robots of two drives each scatter too much for one to stand out": """
-        steering:fleet sideways-vehicle:fleet throttle:fleet throttle-tighter:fleet""",
+        both:fleet sideways:fleet sideways-vehicle:fleet steering:fleet throttle:fleet
+        throttle-tighter:fleet gyro-commands:fleet slopes:fleet batch:fleet""",
     "a path is of poses as they are stamped, late": "clock:predict clock:rollout clock:c-header clock:ahead",
 }
 
