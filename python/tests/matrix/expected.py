@@ -32,7 +32,7 @@ WRONG: dict[str, str] = {
         steering:to-ardupilot""",
     "a learner asked for a path has no limits of the drive yet": "limits:ahead",
     "four robots of two drives each scatter too much for one to stand out": """
-        both:fleet sideways:fleet sideways-vehicle:fleet steering:fleet throttle:fleet
+        limits:fleet both:fleet sideways:fleet sideways-vehicle:fleet steering:fleet throttle:fleet
         throttle-tighter:fleet gyro-commands:fleet slopes:fleet batch:fleet""",
     "a path is of poses as they are stamped, late": "clock:predict clock:rollout clock:c-header clock:ahead",
 }
