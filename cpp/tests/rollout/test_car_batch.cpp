@@ -91,8 +91,8 @@ BodyTwist mean_of_period(CarState& state, const BodyTwist& command, double perio
   for (int i = 0; i < steps; ++i) {
     const CarState before = state;
     state = advanced(car(), state, command, period / steps);
-    const BodyTwist now = car_twist(car(), {.speed = 0.5 * (before.speed + state.speed),
-                                            .steering = 0.5 * (before.steering + state.steering)});
+    const BodyTwist now = car_twist(
+        car(), {.speed = 0.5 * (before.speed + state.speed), .steering = 0.5 * (before.steering + state.steering)});
     mean.v += now.v / steps;
     mean.omega += now.omega / steps;
   }
@@ -121,7 +121,8 @@ double apart_from_laws(InstructionLevel level) {
     for (std::size_t k = 0; k < kPeriods; ++k) {
       const std::size_t i = k * kRollouts + n;
       const BodyTwist mean = mean_of_period(
-          state, {.v = static_cast<double>(throttle[i]), .vy = 0.0, .omega = static_cast<double>(steering[i])}, kPeriod);
+          state, {.v = static_cast<double>(throttle[i]), .vy = 0.0, .omega = static_cast<double>(steering[i])},
+          kPeriod);
       worst = std::max({worst, std::abs(static_cast<double>(found.v[i]) - mean.v),
                         std::abs(static_cast<double>(found.omega[i]) - mean.omega)});
     }

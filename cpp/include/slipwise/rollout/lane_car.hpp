@@ -30,7 +30,7 @@ SLIPWISE_LANES void follow_curve(const LaneCurve<Scalar>& curve, const Vector& x
 template <class Vector, typename Scalar>
 SLIPWISE_LANES void negative_exponential(const Vector& x, Vector& power) {
   constexpr bool kFloat = std::is_same_v<Scalar, float>;
-  constexpr int kSquares = kFloat ? 4 : 10;  // of e^(x / 16) and of e^(x / 1024)
+  constexpr int kSquares = kFloat ? 4 : 10;                         // of e^(x / 16) and of e^(x / 1024)
   constexpr auto kLeast = static_cast<Scalar>(kFloat ? -16 : -40);  // e^-16 of a gap is nothing in float
   constexpr int kTerms = 8;
   Vector least;
