@@ -54,6 +54,7 @@ ANY_LENGTH = {
     "NoiseGroup.__init__ residuals",
     "Recording.__init__ attitudes",
     "Recording.__init__ commands",
+    "Recording.__init__ forces",
     "Recording.__init__ gyro",
     "Recording.__init__ poses",
     "Recording.__init__ wheels",
