@@ -29,7 +29,7 @@ from slipwise.calibration.statistics import held_out_half
 from slipwise.logs import Log, LogOptions, Poses, Run
 from slipwise.logs.log import CarCommands, Forces
 from slipwise.models import Model
-from slipwise.models.schema import LimitsSection
+from slipwise.models.limits import LimitsSection
 
 LIMITED = ("husky/tile_deflated_tyres", "drive_test/husky", "drive_test/warthog")  # limits show in these
 AFTERWARDS = 1.0  # s after a command that a limit changes, in which the drive still follows it

@@ -56,7 +56,13 @@ def test_weights_of_both_ways_to_learn_are_drawn_with_one_basis_or_many() -> Non
 
 def test_lag_is_shown_in_seconds() -> None:
     lag = Parameter(
-        name="log_time_constant_v", unit="ln s", value=np.log(0.8), std=0.1, prior_std=1.0, identifiable=True
+        name="log_time_constant_v",
+        stage="actuator",
+        unit="ln s",
+        value=np.log(0.8),
+        std=0.1,
+        prior_std=1.0,
+        identifiable=True,
     )
     rest = [
         lag.model_copy(update={"name": f"log_{name}"})
