@@ -12,7 +12,7 @@ from alternatives_of_verdicts import good
 from contradictory_logs import scaled, sound_log
 from disturbed_robot import Robot, disturbed_run
 
-from slipwise.models.schema import AxisLimitsSection, LearnedLimit, LimitsSection
+from slipwise.models.limits import AxisLimitsSection, LearnedLimit, LimitsSection
 
 
 def test_means_are_geometric_over_logs() -> None:
