@@ -73,7 +73,7 @@ def _rows(prior: str, knowledge: Knowledge) -> Pairs:
     told = np.array([_told(knowledge, v, omega) for v, _, omega in grid.tolist()])
     start = prior_information(knowledge)
     designed = [_told(knowledge, m.v, m.omega) for m in design_drive(knowledge, SPACE, options).moves]
-    v, omega = grid.T
+    v, _, omega = grid.T
     typical = np.flatnonzero((v >= 0.4) & (v <= 1.6) & (np.abs(omega) < 0.5))
     rows = {f"designed, {prior}": {n: judge.sigmas(start + np.sum(designed[:n], axis=0)) for n in COUNTS}}
     random = np.random.default_rng(0)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -101,7 +102,8 @@ def _not_written(log: Log) -> tuple[LeftOut, ...]:
 
 def _filled(values: NDArray[Any]) -> int:
     """Return how many cells hold something."""
-    return int(sum(value is not None and value == value for value in values.tolist()))  # NaN is not itself
+    empty = (value is None or (isinstance(value, float) and math.isnan(value)) for value in values.tolist())
+    return len(values) - sum(empty)
 
 
 def _write(entries: list[Entry], temporary: Path, store: Typestore) -> None:
