@@ -33,7 +33,7 @@ class Compiler {
       const bool along_x = quantity == Quantity::GravityX;
       if (is_sideways(quantity)) {
         factors.push_back(sideways_factor(quantity));
-      } else if (!along_x && quantity != Quantity::GravityY) {
+      } else if (!is_gravity(quantity)) {
         factors.push_back(static_cast<SlipFactor>(quantity));
       } else if (!gravity) {
         factors.push_back(along_x ? SlipFactor::GravityX : SlipFactor::GravityY);

@@ -49,13 +49,6 @@ std::array<Scalar, 2> gravity_on(const TiltAngles<Scalar>& tilt) {
   return {g * tilt.sin_pitch, -(g * tilt.cos_pitch * tilt.sin_roll)};
 }
 
-bool has_gravity(const Basis& basis) {
-  return std::ranges::any_of(basis.terms(), [](const Term& term) {
-    return std::ranges::any_of(
-        term.factors(), [](Quantity factor) { return factor == Quantity::GravityX || factor == Quantity::GravityY; });
-  });
-}
-
 /// Half a step of the drive further than `pose`.
 Pose2 middle_of(const ActuatorStep& step, const Pose2& pose) {
   return compose(pose, {0.5 * step.forward, 0.5 * step.left, 0.5 * step.turn});
@@ -183,7 +176,7 @@ GroundStepLinearization linearize_ground_step(const Ground& ground, const Actuat
 
 Eigen::Matrix3d above_by_place(const GroundStepLinearization& ground, const ActuatorStep& step, const PathSlip& along,
                                const Eigen::Vector3d& body) {
-  if (!has_gravity(along.basis)) {
+  if (!along.basis.by_gravity()) {
     return ground.above_by(body);
   }
   const auto by_gravity = slip_rate_by_gravity(along.basis, along.alpha, slip_state(step, along.gravity));

@@ -97,7 +97,7 @@ struct SensitivitySums {
   /// ground is evaluated at. `step` has a column for each actuator parameter.
   void add_ground(const Eigen::Matrix3d& by_place, const GroundStepLinearization& at, const Pose2& before,
                   const std::optional<LearnedColumns>& step) {
-    if (!at.at_by_pose.isZero(0.0)) {  // as it is of a measured attitude
+    if (!at.at_by_pose.isZero(0.0)) {  // zero of a measured attitude, which hangs on the stamps alone
       const Eigen::Matrix3d by_start = by_place * at.at_by_pose * transition(Pose2{}, before);
       slip += (by_start * slip).eval();
       actuator += (by_start * actuator).eval();

@@ -66,6 +66,7 @@ Basis::Basis(std::string name, std::span<const std::string> lon, std::span<const
   begin_[kChannels] = terms_.size();
   for (const Term& term : terms_) {
     sideways_ = sideways_ || term.sideways();
+    by_gravity_ = by_gravity_ || term.by_gravity();
     by_heading_ = by_heading_ || term.by_heading();
     coefficients_.push_back(term.coefficient());
     factors_.insert(factors_.end(), term.factors().begin(), term.factors().end());

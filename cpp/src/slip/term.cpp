@@ -130,6 +130,7 @@ Term Term::parse(std::string_view text) {
 }
 
 bool Term::sideways() const { return std::ranges::any_of(factors_, is_sideways); }
+bool Term::by_gravity() const { return std::ranges::any_of(factors_, is_gravity); }
 bool Term::by_heading() const { return std::ranges::any_of(factors_, is_heading); }
 
 void SlipQuantities::see_sideways(double v, double vy) {

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from slipwise.models.axes import LEAST_SIDEWAYS
+from slipwise.models.axes import driven_span
 
 
 class SidewaysSeen:
@@ -30,5 +30,4 @@ class SidewaysSeen:
     @property
     def span(self) -> list[float] | None:
         """The range [m/s], as `sideways_span` has it of a log; None: it is no axis of commands."""
-        driven = max(self.left, -self.right) > LEAST_SIDEWAYS * self.most
-        return [self.right, self.left] if driven else None
+        return driven_span(self.most, self.right, self.left)

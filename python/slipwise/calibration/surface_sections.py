@@ -118,7 +118,7 @@ def _wider(a: Range, b: Range) -> Range:
     spans = {}
     for name in ("speed", "yaw_rate", "throttle", "steering"):
         one, other = getattr(a, name), getattr(b, name)
-        spans[name] = one and other and [min(one[0], other[0]), max(one[1], other[1])]
+        spans[name] = one and other and _wider_span(one, other)
     return Range(
         **spans,
         sideways=_wider_span(a.sideways, b.sideways),

@@ -89,10 +89,13 @@ def drive_axes(model: Model) -> Axes:
 
 def sideways_span(v: NDArray[Any], vy: NDArray[Any]) -> list[float] | None:
     """Return the range of sideways speeds that inputs drove [m/s], None where they did not."""
-    most = float(np.abs(vy).max(initial=0.0))
-    if most <= LEAST_SIDEWAYS * float(np.hypot(v, vy).max(initial=0.0)):
-        return None
-    return [min(float(vy.min()), 0.0), max(float(vy.max()), 0.0)]
+    fastest = float(np.hypot(v, vy).max(initial=0.0))
+    return driven_span(fastest, float(vy.min(initial=0.0)), float(vy.max(initial=0.0)))
+
+
+def driven_span(fastest: float, right: float, left: float) -> list[float] | None:
+    """Return sideways speeds, right <= 0 <= left, where they are an axis beside the fastest speed [m/s]."""
+    return [right, left] if max(left, -right) > LEAST_SIDEWAYS * fastest else None
 
 
 def refuse_sideways(model: Model, what: str) -> None:

@@ -40,6 +40,8 @@ class Basis {
   std::size_t end(Channel channel) const { return begin_[static_cast<std::size_t>(channel) + 1]; }
   /// Whether a term depends on the sideways speed.
   bool sideways() const { return sideways_; }
+  /// Whether a term depends on the gravity that pulls the robot.
+  bool by_gravity() const { return by_gravity_; }
   /// Whether a term depends on the heading in the frame of the poses.
   bool by_heading() const { return by_heading_; }
   /// `lon.V`, `ang.V*w`, ...: the parameter's name in files and tables.
@@ -62,6 +64,7 @@ class Basis {
   std::vector<std::size_t> factor_end_;
   std::vector<Quantity> factors_;
   bool sideways_ = false;
+  bool by_gravity_ = false;
   bool by_heading_ = false;
 };
 

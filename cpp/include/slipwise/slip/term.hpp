@@ -33,6 +33,7 @@ enum class Quantity : std::uint8_t {
 };
 inline constexpr std::size_t kQuantities = 13;
 inline bool is_sideways(Quantity quantity) { return quantity >= Quantity::SideV; }
+inline bool is_gravity(Quantity quantity) { return quantity == Quantity::GravityX || quantity == Quantity::GravityY; }
 inline bool is_heading(Quantity quantity) { return quantity == Quantity::CosYaw || quantity == Quantity::SinYaw; }
 
 /// The state that slip depends on.
@@ -114,6 +115,8 @@ class Term {
 
   /// Whether a quantity of driving sideways is among the factors.
   bool sideways() const;
+  /// Whether the gravity that pulls the robot is.
+  bool by_gravity() const;
   /// Whether the heading in the frame of the poses is.
   bool by_heading() const;
 
