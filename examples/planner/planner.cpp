@@ -16,7 +16,6 @@
 slipwise::MotionModel learned_model() {
   const std::vector<std::string> lon{SLIPWISE_TERMS_LON}, lat{SLIPWISE_TERMS_LAT}, ang{SLIPWISE_TERMS_ANG};
   const slipwise::ActuatorParameters actuator{.dynamics = SLIPWISE_HAS_DYNAMICS,
-                                              .clock_offset = SLIPWISE_HAS_CLOCK_OFFSET,
                                               .response = SLIPWISE_HAS_RESPONSE,
                                               .delays = SLIPWISE_HAS_DELAYS};
   return {{"learned", lon, lat, ang}, actuator};

@@ -123,7 +123,9 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             (t [s], v [m/s], omega [rad/s]), [N, 3]; of a robot that drives sideways (t, v, vy, omega),
             [N, 4], of a car (t, throttle, steering). Those before `start` matter where there is lag or delay.
         horizon: how far to predict [s]; poses are returned every `PERIOD` and at the horizon.
-        start: when the prediction starts [s]; by default at the first command.
+        start: when the prediction starts [s], by the clock of the inputs; by default at the first command.
+            The robot is at the start of the path then. A pose that was stamped at that moment may be older:
+            its sensor's learned `clock_offset` says how much, and has no part in the path.
         initial: the drive's measured (v [m/s], omega [rad/s]), or (v, vy, omega), at the start, of which a
             car commanded by throttle and steering takes the speed; by default it follows from the commands,
             before the first of which the robot is at rest.

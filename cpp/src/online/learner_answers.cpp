@@ -43,13 +43,11 @@ void check(const std::vector<InputSample>& future, double horizon) {
   }
 }
 
-/// The same of base_link: without the rows that say where the pose sensor sits on it.
+/// The same of base_link, by the clock of the inputs: without the pose sensor's place and clock, which are the last
+/// parameters.
 MotionPosterior of_base_link(MotionPosterior posterior) {
   ActuatorParameters learned = posterior.model.learned();
-  if (!learned.sensor_extrinsics) {
-    return posterior;
-  }
-  learned.sensor_extrinsics = false;
+  learned.sensor_extrinsics = learned.clock_offset = false;
   posterior.model = MotionModel(posterior.model.basis(), learned);
   const Eigen::Index kept = posterior.model.size();
   posterior.estimate.mean.conservativeResize(kept);

@@ -11,7 +11,7 @@ from slipwise.errors import ModelError
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.models.model import Model
 
-_KNOWN = {"clock_offset"} | {
+_KNOWN = {
     f"{name}_{place}"
     for name in ("log_time_constant", "log_delay", "delay", "gain", "slow_fraction", "log_slow_time_constant")
     for place in ("v", "omega")
@@ -59,11 +59,10 @@ class ChannelResponse:
 
 @dataclass(frozen=True, eq=False)
 class Actuator:
-    """The channels, and how much later than the inputs poses are stamped [s]."""
+    """Its channels."""
 
     v: ChannelResponse
     omega: ChannelResponse
-    clock_offset: LearnedNumber
 
 
 def actuator_of(model: Model) -> Actuator:
@@ -102,4 +101,4 @@ def actuator_of(model: Model) -> Actuator:
             held=None if body is None else body.held[("v", "omega").index(place)],
         )
 
-    return Actuator(channel("v"), channel("omega"), plain("clock_offset", 0.0))
+    return Actuator(channel("v"), channel("omega"))

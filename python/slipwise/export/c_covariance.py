@@ -30,7 +30,6 @@ _SHIFTED = {
     "slow_fraction_omega": "model.yaw.slow_fraction += {by}",
     "log_slow_time_constant_v": "model.speed.slow_time_constant *= SLIPWISE_MATH(exp)({by})",
     "log_slow_time_constant_omega": "model.yaw.slow_time_constant *= SLIPWISE_MATH(exp)({by})",
-    "clock_offset": "model.clock_offset += {by}",
 }
 
 

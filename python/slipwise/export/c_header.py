@@ -109,8 +109,6 @@ def _constants(model: Model) -> str:
         _define(name, value, what + how.get(f"{part}_{name.rpartition('_')[2].lower()}", ""))
         for name, value, what, part in named
     ]
-    offset = "[s] poses are stamped this much later than the inputs" + how.get("clock_offset", "")
-    lines.append(_define("CLOCK_OFFSET", actuator.clock_offset.value, offset))
     slip = model.content.parameters[: model.motion.slip_size]
     lines += [_define(f"P{i}", p.value, f"{p.name} [{p.unit}]{how[p.name]}") for i, p in enumerate(slip)]
     return "\n".join(lines)
@@ -138,7 +136,6 @@ def _library(model: Model) -> str:
         ("PARAMETER_COUNT", motion.size),
         ("HAS_DYNAMICS", motion.dynamics),
         ("HAS_RESPONSE", motion.response),
-        ("HAS_CLOCK_OFFSET", motion.clock_offset),
         ("HAS_DELAYS", motion.delays),
     ]
     lines = [f"#define SLIPWISE_{name} {text}".rstrip() for name, text in lists]

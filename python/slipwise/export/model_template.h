@@ -72,7 +72,7 @@ typedef struct {
 } slipwise_drive;
 
 typedef struct {
-  slipwise_real start, end;    /* [s] */
+  slipwise_real start, end;    /* [s] by the clock of the commands, as the robot is then: not as late poses say */
   const slipwise_drive *drive; /* at the start, where measured or predicted; NULL: from rest, by the commands */
   slipwise_real gx, gy;        /* gravity in the robot's frame [m/s^2]: g sin(pitch), -g cos(pitch) sin(roll) */
 } slipwise_window;
@@ -126,7 +126,7 @@ typedef struct {
 typedef struct {
   slipwise_real p[SLIPWISE_SLOTS(SLIPWISE_SLIP_PARAMETERS)]; /* of the slip */
   slipwise_response speed, yaw;
-  slipwise_real delay_v, delay_omega, clock_offset;
+  slipwise_real delay_v, delay_omega;
 } slipwise_model;
 
 /* The learned model; `by` [SLIPWISE_PARAMETER_COUNT] is added to its parameters, lags and delays by their logarithms.
@@ -143,7 +143,6 @@ static inline slipwise_model slipwise_model_shifted(const slipwise_real *by) {
   model.yaw.slow_time_constant = SLIPWISE_SLOW_TIME_CONSTANT_OMEGA;
   model.delay_v = SLIPWISE_DELAY_V;
   model.delay_omega = SLIPWISE_DELAY_OMEGA;
-  model.clock_offset = SLIPWISE_CLOCK_OFFSET;
 @LEARNED@
   if (by) {
 @SHIFTS@
@@ -367,8 +366,8 @@ static inline int slipwise_run(const slipwise_model *model, const slipwise_comma
   const slipwise_path nowhere = {{0, 0, 0}, 1, 0};
   const slipwise_real speed_lag = slipwise_start_lag(&model->speed, window->drive != 0);
   const slipwise_real yaw_lag = slipwise_start_lag(&model->yaw, window->drive != 0);
-  slipwise_real start = window->start - model->clock_offset, known = start, early;
-  const slipwise_real end = window->end - model->clock_offset;
+  const slipwise_real start = window->start;
+  slipwise_real early;
   slipwise_start at;
   if (slipwise_is_bad(window)) {
     return SLIPWISE_BAD_WINDOW;
@@ -376,21 +375,18 @@ static inline int slipwise_run(const slipwise_model *model, const slipwise_comma
   if (commands->count < 1 || slipwise_command_at(commands, 0)->t > window->start) {
     return SLIPWISE_NO_COMMAND;
   }
-  if (window->drive) {
-    known = window->start; /* by the clock of the commands, and so by that of the wheels */
-  }
-  early = known - SLIPWISE_SETTLED_LAGS * (speed_lag > yaw_lag ? speed_lag : yaw_lag);
+  early = start - SLIPWISE_SETTLED_LAGS * (speed_lag > yaw_lag ? speed_lag : yaw_lag);
   walk->window = window;
   walk->path = nowhere;
   walk->model = model;
   walk->noise = noise;
-  at = slipwise_start_of(model, window->drive, known);
+  at = slipwise_start_of(model, window->drive, start);
   walk->speed_input = slipwise_cursor_at(commands, &at, model->delay_v, early, window->end);
   walk->yaw_input = slipwise_cursor_at(commands, &at, model->delay_omega, early, window->end);
   walk->speed = slipwise_settled(&model->speed, slipwise_held(&walk->speed_input).v);
 @SIDE{  walk->side = slipwise_settled(&model->speed, slipwise_held(&walk->speed_input).vy);
 }@  walk->yaw_rate = slipwise_settled(&model->yaw, slipwise_held(&walk->yaw_input).omega);
-  slipwise_cover(walk, early, known, 0);
+  slipwise_cover(walk, early, start, 0);
   if (window->drive) {
     slipwise_measured(&walk->speed, &model->speed, window->drive->v, slipwise_held(&walk->speed_input).v,
                       slipwise_acts(&walk->speed_input));
@@ -399,13 +395,7 @@ static inline int slipwise_run(const slipwise_model *model, const slipwise_comma
 }@    slipwise_measured(&walk->yaw_rate, &model->yaw, window->drive->omega, slipwise_held(&walk->yaw_input).omega,
                       slipwise_acts(&walk->yaw_input));
   }
-  if (start < known) { /* poses are stamped late: what the robot did meanwhile was measured */
-    const slipwise_real until = known < end ? known : end;
-    slipwise_advance(walk, *window->drive, until - start);
-    start = known;
-  }
-  slipwise_cover(walk, known, start, 0);
-  slipwise_cover(walk, start, end, 1);
+  slipwise_cover(walk, start, window->end, 1);
   return SLIPWISE_OK;
 }
 

@@ -135,10 +135,12 @@ class Model:
 
     @cached_property
     def body(self) -> Model:
-        """The model of base_link: without the rows that say where the pose sensor sits on it."""
-        if not self.content.sensor_extrinsics:
+        """The model of base_link, by the clock of the inputs: without the pose sensor's place and clock."""
+        if not (self.content.sensor_extrinsics or self.content.clock_offset):
             return self
-        return self.with_table(self.table.without("sensor"), sensor_extrinsics=False)
+        return self.with_table(
+            self.table.without("sensor", "clock"), sensor_extrinsics=False, clock_offset=False
+        )
 
     @cached_property
     def table(self) -> ParameterTable:

@@ -72,6 +72,7 @@ def learned_motions(  # noqa: PLR0913  (all but the first are options)
         SettingsError: samples of slip on surfaces ahead are asked for.
     """
     rng = np.random.Generator(np.random.PCG64(seed))
+    model = model.body
     model.refuse_heading("controllers")
     slip, sideways = slip_ahead(terrain_ahead, model), drive_axes(model).sideways
     if slip is not None:

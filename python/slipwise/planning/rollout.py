@@ -71,7 +71,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
             those of a car with a steering angle are v and v tan(angle) / wheelbase. Those of a
             model of throttle and steering are these, in [-1, 1], as the past of the start is.
-        commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`; see `command_buffer`. Of a
+        commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`, from when the
+            robot is at the start by the clock of the inputs; see `command_buffer`. Of a
             robot that drives sideways [N, K, 3]: v, vy, omega, as `models.axes.axes_of` says.
         dt: time that a command is held [s].
         start: where the rollouts start; by default at rest in the origin.
@@ -92,6 +93,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         SettingsError: the batch is empty, a command is not finite, something does not fit the rest, or
             there is no such device; it says why.
     """
+    model = model.body
     numbers = checked_commands(model, commands, dtype)
     check_threads(threads)
     warn_of_unseen_speeds(model, numbers, stacklevel=2)
@@ -180,6 +182,7 @@ def check_threads(threads: int) -> None:
 
 def uncertain(model: Model, dt: float, start: Start, horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
+    model = model.body
     model.refuse_heading("rollouts")
     slip = slip_ahead(start.terrain_ahead, model)
     scale = np.array(model.content.noise.variance_scale) if slip is None else slip.variance_scale

@@ -34,7 +34,6 @@ WRONG: dict[str, str] = {
     "four robots of two drives each scatter too much for one to stand out": """
         limits:fleet both:fleet sideways:fleet sideways-vehicle:fleet steering:fleet throttle:fleet
         throttle-tighter:fleet gyro-commands:fleet slopes:fleet batch:fleet""",
-    "a path is of poses as they are stamped, late": "clock:predict clock:rollout clock:c-header clock:ahead",
 }
 
 
