@@ -33,6 +33,7 @@ from driven_day import DrivenDay, Measured
 from slipwise.calibration import Settings
 from slipwise.calibration.live_table import LiveTable
 from slipwise.cli.output import Column, Output
+from slipwise.live import node
 from slipwise.live.build import build_node
 from slipwise.live.cache import Cache, CacheKey
 from slipwise.live.feed import Feed
@@ -91,12 +92,12 @@ def processor_time(seconds: float) -> Cost:
             "live",
             "--transport",
             "cyclonedds",
-            "--set",
-            f"live.domain={DOMAIN}",
         ]
         topics = ["--command-topic", "/cmd_vel", "--wheel-topic", "/odom", "--pose-topic", "/pose"]
         with subprocess.Popen(
-            [*command, "--set", f"live.domain={DOMAIN}", *topics, "--cache", folder], stdout=output
+            [*command, *topics, "--cache", folder],
+            stdout=output,
+            env=os.environ | {"ROS_DOMAIN_ID": str(DOMAIN)},
         ) as live:
             try:
                 with publishing(seconds + WARM + 5.0):
@@ -218,8 +219,9 @@ class Kills:
 def kills(count: int) -> Kills:
     """Kill a node that saves often, again and again; it always goes on from its cache."""
     random.seed(SEED)
+    node.SAVE_EVERY = SAVES
     folder = Path(tempfile.mkdtemp())
-    table = LiveTable(cache=str(folder), save_every=SAVES)
+    table = LiveTable(cache=str(folder))
     settings = Settings().model_copy(update={"live": table})
     key = CacheKey.of(table.name, "command", settings)
     readable = models = went_on = 0

@@ -1,37 +1,52 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the rows of [log] in docs/settings.md from where the options of reading a log are declared.
+"""Writes the keys in docs/settings.md from where they are declared: the tables of settings, and `log_fields`.
 
-Run it as `python docs/settings_page.py` after a change of slipwise/log_fields.py; a test compares.
+Run it as `python docs/settings_page.py` after a change of a key; a test compares.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from itertools import groupby
 from pathlib import Path
+from typing import Any
 
-from slipwise.log_fields import LOG_FIELDS, About
+from slipwise.calibration.keys import Key, keys_of
+from slipwise.calibration.settings import Settings
 
 PAGE = Path(__file__).with_name("settings.md")
 _COLUMN = 29  # where comments start
-_HEAD = "[log]"
-_ABOUT = "how a log is read (--help-log); the command line goes before; several are a list"
-_UNITS = {"METRES": "m: ", "SECONDS": "s: ", "RADIANS": "rad: ", "MIB": "MiB: "}
 
 
-def _row(about: About) -> str:
-    value = json.dumps(about.default) if about.default is not None else about.example
-    if about.default == {}:
-        value = "{}"
-    key = f"{'# ' if about.default is None else ''}{about.name} = {value}"
-    return f"{key:<{_COLUMN - 1}} # {_UNITS.get(about.metavar, '')}{about.help}"
+def rows() -> Iterator[str]:
+    """Yield the lines of all keys, table by table."""
+    for table, keys in groupby(keys_of(Settings), key=lambda each: each.table):
+        if table:
+            yield ""
+            yield f"{f'[{table}]':<{_COLUMN - 1}} # {_about(table)}"
+        yield from map(_row, keys)
+
+
+def _about(table: str) -> str:
+    model: Any = Settings
+    for name in table.split("."):
+        model = model.model_fields[name].annotation
+    first: str = model.__doc__.strip().splitlines()[0].rstrip(".")
+    return first[0].lower() + first[1:]
+
+
+def _row(key: Key) -> str:
+    none = key.default is None
+    line = f"{'# ' if none else ''}{key.name} = {key.example if none else json.dumps(key.default)}"
+    return f"{line:<{_COLUMN - 1}} # {key.help}"
 
 
 def with_rows(page: str) -> str:
-    """Return the page with the rows of [log] as they are declared."""
-    rows = [f"{_HEAD:<{_COLUMN - 1}} # {_ABOUT}", *map(_row, LOG_FIELDS)]
-    start = page.index(f"\n{_HEAD}") + 1
-    end = page.index("\n\n", start)
-    return page[:start] + "\n".join(rows) + page[end:]
+    """Return the page with the keys as they are declared."""
+    fence = "```toml\n"
+    start = page.index(fence) + len(fence)
+    return page[:start] + "\n".join(rows()) + page[page.index("\n```", start) :]
 
 
 if __name__ == "__main__":

@@ -15,12 +15,12 @@ from seeds import lines_of_drive, taught, with_sums
 
 from slipwise import _core
 from slipwise.errors import SettingsError, SlipwiseError
-from slipwise.logs import LogOptions, open_log, save_log
+from slipwise.logs import open_log, save_log, unpacking
 
 if TYPE_CHECKING:
     from slipwise.calibration.motion_learner import MotionLearner
 
-OPTIONS = LogOptions(most_unpacked=16.0)
+unpacking.MOST_UNPACKED = 16.0  # MiB
 _ENDINGS = {
     "rosbag1": ".bag",
     "calibrate": ".csv",
@@ -86,7 +86,7 @@ class Target:
 
 
 def _read_log(path: Path) -> None:
-    log = open_log(path, options=OPTIONS)
+    log = open_log(path)
     for run in log.runs:
         assert np.isfinite(run.poses.x).all()
     if sum(len(run.poses) for run in log.runs) % _CONVERTED == 1:
@@ -118,7 +118,7 @@ def _read_times(path: Path) -> None:
 def _learn(path: Path) -> None:
     from slipwise.calibration import calibrate, make_settings
 
-    result = calibrate(open_log(path, options=OPTIONS), settings=make_settings({"basis": "edd-2"}))
+    result = calibrate(open_log(path), settings=make_settings({"basis": "edd-2"}))
     assert np.isfinite(result.model.mean).all()
 
 

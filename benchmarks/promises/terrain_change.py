@@ -96,9 +96,7 @@ def _learned(robot: Robot, job: Job, at: float, settings: Settings) -> LearnedLo
     log = disturbed_run(robot, MINUTES, seed=job.seed, change=change).log
     if job.input == "command":
         log = Log(tuple(replace(part, wheels=None) for part in log.runs))
-    return learn_log(
-        prepare_run(log, job.input), settings, (HORIZON,), keep=Keep(settings.vehicle.wheel_separation)
-    )
+    return learn_log(prepare_run(log, job.input), settings, (HORIZON,), keep=Keep(settings.wheel_separation))
 
 
 def _alarms(learned: LearnedLog) -> np.ndarray:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a log is read: the one place that declares key, option, default and help.
 
-`LogOptions`, the table [log] of a settings file, the options of the command line and the rows of
+`LogOptions`, the options of the command line, the table [log] of a settings file and its rows in
 docs/settings.md are made from these fields.
 """
 
@@ -37,6 +37,7 @@ class About(NamedTuple):
     help: str
     example: str  # value in a settings file, shown where the default is none
     default: Any
+    key: bool  # whether a settings file has it too; else it is of one log, or a vehicle's file says it
 
     @property
     def option(self) -> str:
@@ -44,8 +45,10 @@ class About(NamedTuple):
         return f"--{self.name.replace('_', '-')}"
 
 
-def _key(kind: Kind, metavar: str, text: str, *, default: Any = None, example: str = "") -> Any:
-    about = {"kind": kind, "metavar": metavar, "help": text, "example": example}
+def _key(  # noqa: PLR0913 - what is declared once
+    kind: Kind, metavar: str, text: str, *, default: Any = None, example: str = "", key: bool = True
+) -> Any:
+    about = {"kind": kind, "metavar": metavar, "help": text, "example": example, "key": key}
     if kind is Kind.columns:  # a dict is no default of a field
         return field(default_factory=dict, metadata=about)
     return field(default=default, metadata=about)
@@ -83,10 +86,18 @@ class LogFields:
     pose_frame: str | None = _key(Kind.text, "FRAME", "TF: the fixed frame.", example='"map"')
     child_frame: str | None = _key(Kind.text, "FRAME", "TF: the robot's frame.", example='"base_link"')
     left_joints: tuple[str, ...] = _key(
-        Kind.names, "NAMES", "JointState: names of the left wheels, separated by commas.", default=()
+        Kind.names,
+        "NAMES",
+        "JointState: names of the left wheels, separated by commas.",
+        default=(),
+        key=False,
     )
     right_joints: tuple[str, ...] = _key(
-        Kind.names, "NAMES", "JointState: names of the right wheels, separated by commas.", default=()
+        Kind.names,
+        "NAMES",
+        "JointState: names of the right wheels, separated by commas.",
+        default=(),
+        key=False,
     )
     wheel_radius: float | None = _key(
         Kind.positive, "METRES", "Wheel radius, for wheel speeds in rad/s.", example="0.1"
@@ -98,7 +109,7 @@ class LogFields:
         example="0.5",
     )
     wheelbase: float | None = _key(
-        Kind.positive, "METRES", "Distance between the axles, for steering angles.", example="1.2"
+        Kind.positive, "METRES", "Distance between the axles, for steering angles.", example="1.2", key=False
     )
     vehicle: str | None = _key(
         Kind.text,
@@ -117,6 +128,7 @@ class LogFields:
         "V,OMEGA",
         "The same factors for the speed and yaw rate of the wheels.",
         default=(1.0, 1.0),
+        key=False,
     )
     pose_yaw_offset: float = _key(
         Kind.number,
@@ -124,6 +136,7 @@ class LogFields:
         "Added to the heading of every pose: 3.1416 if the pose sensor looks backwards. Roll and pitch turn "
         "with it.",
         default=0.0,
+        key=False,
     )
     poses: Path | None = _key(
         Kind.files,
@@ -131,12 +144,14 @@ class LogFields:
         "Measured poses in a file beside the log: TUM, KITTI, a table, GPX, NMEA or .pos. Repeat it for "
         "further pose sources.",
         example='"lidar_tum.txt"',
+        key=False,
     )
     pose_clock_offset: float | str | None = _key(
         Kind.number_or_auto,
         "SECONDS",
         "Added to the stamps of the poses; auto finds it from the motion that inputs and poses share.",
         example='"auto"',
+        key=False,
     )
     command_timeout: float | None = _key(
         Kind.positive,
@@ -145,27 +160,23 @@ class LogFields:
         example="0.5",
     )
     start: float | None = _key(
-        Kind.number, "SECONDS", "Leave out what comes before, counted from the log's start.", example="10.0"
+        Kind.number,
+        "SECONDS",
+        "Leave out what comes before, counted from the log's start.",
+        example="10.0",
+        key=False,
     )
     end: float | None = _key(
-        Kind.number, "SECONDS", "Leave out what comes after, counted from the log's start.", example="60.0"
+        Kind.number,
+        "SECONDS",
+        "Leave out what comes after, counted from the log's start.",
+        example="60.0",
+        key=False,
     )
     columns: Mapping[str, str] = _key(
         Kind.columns,
         "NAMES",
         "Columns of a table under other names: t=time,cmd_v=vx, or by number from 0: t=0,cmd_v=1.",
-    )
-    most_unpacked: float = _key(
-        Kind.positive,
-        "MIB",
-        "What a compressed table, or one chunk or message of a bag, may unpack to; default 512.",
-        default=512.0,
-    )
-    most_fetched: float = _key(
-        Kind.positive,
-        "MIB",
-        "What a log on a server (https://, s3://, gs://) may have; default 4096.",
-        default=4096.0,
     )
 
 

@@ -41,7 +41,7 @@ def slip_ratio_filter(input_name: str, settings: Settings, windows: WindowSet) -
     name = "slip-ratio-ekf"
     _refuse_commands(name, input_name)
     table = _thesis.SlipRatioFilterSettings()
-    table.wheel_separation, table.huber = settings.vehicle.wheel_separation, settings.filter.huber
+    table.wheel_separation, table.huber = settings.wheel_separation, settings.filter.huber
     table.noise = settings.filter_settings().noise.shape
     estimator = _thesis.SlipRatioFilter(table)
 
@@ -61,7 +61,7 @@ def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet)
     name = "slip-ratio-smo"
     _refuse_commands(name, input_name)
     table = _thesis.SlidingModeSettings()
-    table.wheel_separation = settings.vehicle.wheel_separation
+    table.wheel_separation = settings.wheel_separation
     estimator = _thesis.SlidingModeObserver(table)
 
     def posterior() -> Posterior:

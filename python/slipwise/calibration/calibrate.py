@@ -180,7 +180,7 @@ def judged_content(
 
 def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:
     """Learn in one pass, which also makes the predictions that are judged."""
-    keep = Keep(settings.vehicle.wheel_separation)
+    keep = Keep(settings.wheel_separation)
     return learned_by(learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep, progress=progress))
 
 

@@ -74,7 +74,7 @@ def calibrate_sequence(
     drives = _drives(logs, input_name)
     windows = learning_windows(tuple(run for drive in drives for run in drive), input_name, settings)
     refuse_empty(windows, log)
-    keep = Keep(settings.vehicle.wheel_separation)
+    keep = Keep(settings.wheel_separation)
     sequence = learn_sequence(
         drives, settings, JUDGING_HORIZONS, options=replace(options, keep=keep), progress=progress
     )
@@ -98,7 +98,7 @@ def calibrate_sequence(
 
 def settings_of(model: Model) -> Settings:
     """Return the settings that a model was learned with."""
-    return make_settings(model.content.provenance.settings, where="settings in the model file")
+    return make_settings(model.content.provenance.settings, where="settings in the model file", saved=True)
 
 
 def _drives(logs: Sequence[Log], input_name: str) -> list[tuple[PreparedRun, ...]]:

@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from slipwise import _core
-from slipwise.calibration.settings import AUTO_BASES, Settings
+from slipwise.calibration.learning_tables import AUTO_BASES
+from slipwise.calibration.settings import Settings
 from slipwise.calibration.source_tables import core_sources
 from slipwise.errors import SettingsError
 

@@ -109,7 +109,7 @@ def _learned(
     def learn(windows: WindowSet) -> Learned:
         if begin is not None:
             begin_from(learner, begin[0], input_name, wheels=has_wheels(windows.drive), where=begin[1])
-        keep = Keep(settings.vehicle.wheel_separation)
+        keep = Keep(settings.wheel_separation)
         return learned_by(learn_with(learner, windows.drive, JUDGING_HORIZONS, keep=keep, progress=progress))
 
     calibration = calibrate_by(learn, log, input_name, settings)

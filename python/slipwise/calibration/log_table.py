@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
-from slipwise.log_fields import LOG_FIELDS, Kind
+from slipwise.calibration.keys import key
+from slipwise.log_fields import LOG_FIELDS, About, Kind
 from slipwise.logs.options import LogOptions
 
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -17,7 +18,7 @@ _TYPES: dict[Kind, Any] = {
     Kind.topics: str | _Several,
     Kind.files: str | _Several,
     Kind.names: list[str],
-    Kind.positive: Annotated[float, Field(gt=0.0, allow_inf_nan=False)],
+    Kind.positive: Annotated[float, Field(gt=0.0, le=1e6, allow_inf_nan=False)],
     Kind.number: _Finite,
     Kind.number_or_auto: _Finite | Literal["auto"],
     Kind.factors: Annotated[list[_Finite], Field(min_length=2, max_length=2)],
@@ -36,15 +37,20 @@ class _Reading(BaseModel):
         return LogOptions.of({"unknown_after": unknown_after} | own | given)
 
 
-def _field(kind: Kind, default: Any) -> tuple[Any, Any]:
-    if default is None:
-        return _TYPES[kind] | None, None
-    return _TYPES[kind], list(default) if isinstance(default, tuple) else default
+_UNITS = {"METRES": "m: ", "SECONDS": "s: ", "RADIANS": "rad: "}
 
 
-_keys: dict[str, Any] = {about.name: _field(about.kind, about.default) for about in LOG_FIELDS}
+def _field(about: About) -> tuple[Any, Any]:
+    kind = _TYPES[about.kind] if about.default is not None else _TYPES[about.kind] | None
+    default = list(about.default) if isinstance(about.default, tuple) else about.default
+    if not about.key:  # an option alone; read for one release from files that have it
+        return kind, default
+    return kind, key(default, _UNITS.get(about.metavar, "") + about.help, example=about.example)
+
+
+_keys: dict[str, Any] = {about.name: _field(about) for about in LOG_FIELDS}
 _Keys: Any = create_model("_Keys", __base__=_Reading, **_keys)
 
 
 class LogTable(_Keys):
-    """How to read the log; slipwise guesses what is not given, and the command line goes before it."""
+    """How slipwise reads a log (--help-log): it guesses what is missing; the command line goes before."""

@@ -311,7 +311,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
         return with_memory(content, self._core.completed(), (kept.structure, kept.motion), self._start)
 
     def _learned(self, model: _core.LearnedModel, *, limits: bool) -> Learned:
-        separation = self._settings.vehicle.wheel_separation
+        separation = self._settings.wheel_separation
         found = found_limits(self._core, model, separation) if limits else None
         predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
         return Learned(
@@ -361,7 +361,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             facts = json.loads(body[_LENGTH_BYTES:split])
             core = _core.MotionLearner.load(body[split:])
             begun = _core.MotionLearner(core.settings).save()
-            settings = make_settings(facts["settings"], where="saved settings")
+            settings = make_settings(facts["settings"], where="saved settings", saved=True)
             learner = cls(
                 facts["input"],
                 settings,

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise.calibration.settings import AUTO_BASES, Settings
+from slipwise.calibration.learning_tables import AUTO_BASES
+from slipwise.calibration.settings import Settings
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
 

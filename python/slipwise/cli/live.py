@@ -58,6 +58,9 @@ def live(
         bool,
         typer.Option("--memory", help="Remember surfaces and recall them, those of --model included."),
     ] = False,
+    surface: Annotated[
+        str | None, optional("NAME", "With --memory: name of the surface at the start.")
+    ] = None,
     cache: Annotated[
         Path | None, optional("DIR", "Keep what was learned here, and continue from it at the next start.")
     ] = None,
@@ -75,7 +78,7 @@ def live(
 
     Reads commands, wheel speeds and poses; publishes odometry with learned slip, the path ahead, the model
     and its validity below the node's name. Ctrl-C or SIGTERM ends it and writes the cache. Settings: [live],
-    such as apply, domain, network, duration.
+    such as apply, network, address.
 
     \b
     Examples:
@@ -100,6 +103,7 @@ def live(
     given = {
         "transport": transport, "name": name, "model": model and str(model), "memory": memory or None,
         "cache": cache and str(cache), "input": input_name and input_name.value,
+        "surface": surface,
     }  # fmt: skip
     chosen = live_settings(chosen_settings(settings, changes), given)
     chosen = with_memory(chosen)

@@ -164,17 +164,15 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
     from slipwise.live.coming import Coming
     from slipwise.live.ros_roles import (
         find_roles,
+        first_poses,
         only_positions,
         source_topics,
         with_oriented_imu,
-        without_headings,
     )
     from slipwise.live.ros_transport import CueTopics, RosTransport
     from slipwise.live.wires.make_wire import make_wire
     from slipwise.live.wires.options import WireOptions
 
-    if table.address is not None:
-        raise SettingsError("only UDP listens at an address", where="address", advice="give --transport udp")
     named = WireOptions(node_name=table.node, domain=table.domain, network=table.network)
     wire = make_wire(None if table.transport in (None, "ros") else table.transport, named)
     try:
@@ -186,7 +184,8 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         say(f"learning from {input_name}s; the node is /{table.node}")
         if only_positions(roles):
             say("satellite fixes without an IMU: positions only, headings are the direction of the path")
-        positions = only_positions(roles) or table.positions or without_headings(wire, roles, say)
+        seen = first_poses(wire, roles, say)
+        positions = only_positions(roles) or table.positions or seen.positions
         cues = CueTopics(table.override_topic, table.surface_topic)
         transport = RosTransport(wire, roles, options, name=table.node, cues=cues, headed=not positions)
     except BaseException:
@@ -200,6 +199,7 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
             positions=positions,
             gyro_alone=roles.pose is None,
             sources=source_topics(roles),
+            attitude=seen.attitude,
             sideways=options.sideways,
         ),
     )

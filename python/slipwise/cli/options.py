@@ -59,7 +59,9 @@ Basis = Annotated[
 SettingsFile = Annotated[Path | None, optional("FILE.toml", "Read settings from this file.", "--settings")]
 Changes = Annotated[
     list[str] | None,
-    optional("KEY=VALUE", "Change one setting, such as filter.huber=3. Repeat it for others.", "--set"),
+    optional(
+        "KEY=VALUE", "Change one setting, such as prior.slip_fraction=0.5. Repeat it for others.", "--set"
+    ),
 ]
 Report = Annotated[Path | None, optional("FILE.html", "Write the HTML report to this file.")]
 Json = Annotated[
@@ -122,10 +124,10 @@ def chosen_settings(file: Path | None, changes: Sequence[str] | None, basis: str
     Raises:
         SettingsError: the file, a key, a value or the basis is wrong.
     """
-    from slipwise.calibration import load_settings, make_settings
+    from slipwise.calibration.settings import load_settings, user_settings
 
     nested = _nested(changes or ()) | ({"basis": basis} if basis else {})
-    settings = make_settings(nested, where="--set") if file is None else load_settings(file, nested)
+    settings = user_settings(nested, where="--set") if file is None else load_settings(file, nested)
     settings.bases()
     return settings
 
@@ -141,7 +143,7 @@ def _nested(changes: Sequence[str]) -> dict[str, Any]:
     for change in changes:
         key, equals, text = change.partition("=")
         if not (key and equals and all(key.split("."))):
-            advice = "write KEY=VALUE, such as filter.huber=3"
+            advice = "write KEY=VALUE, such as prior.slip_fraction=0.5"
             raise SettingsError(f"'{change}' sets no key", where="--set", advice=advice)
         try:
             value = tomllib.loads(f"value = {text}")["value"]

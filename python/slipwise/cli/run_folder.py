@@ -64,8 +64,10 @@ def write_settings(folder: Path, settings: Settings) -> Path:
     Raises:
         OutputError: the file cannot be written.
     """
+    from slipwise.calibration.settings import users_dump
+
     path = folder / "settings.toml"
-    write_text_whole(path, to_toml(settings.model_dump(exclude_none=True)))
+    write_text_whole(path, to_toml(users_dump(settings)))
     return path
 
 

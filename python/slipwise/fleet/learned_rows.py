@@ -80,7 +80,7 @@ def learn_task(task: LogTask) -> LogRows:
         if task.tag and on_server.tag == task.tag:
             return replace(_head(task, settings, 0.0), known=True, tag=task.tag)
         changed = time.time() if on_server.changed is None else on_server.changed
-        with lent(url, settings.log_options().most_fetched) as copy:
+        with lent(url) as copy:
             there = replace(task, log_sha256=log_hash(copy))
             if there.log_sha256 == task.log_sha256:
                 return replace(_head(there, settings, changed), known=True, tag=on_server.tag)

@@ -85,7 +85,7 @@ def _learned(
     if kept is None:
         posterior = learn_log(windows.drive, settings, ()).slip
     else:
-        keep = Keep(settings.vehicle.wheel_separation)
+        keep = Keep(settings.wheel_separation)
         kept[input_name] = learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep)
         posterior = kept[input_name].slip
     parameters = tuple(

@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from slipwise.calibration.live_table import ApplyTable
 from slipwise.live.outputs import Validity
 from slipwise.models import Model
 from slipwise.models.schema import Parameter, Slip, VerdictSection
@@ -16,7 +15,11 @@ from slipwise.number_text import estimate_texts, number_text
 
 LONGEST_STEP = 5.0  # s that one step counts; judgements are no farther apart while the robot drives
 CERTAIN = 3.0  # of its own standard deviations, beyond which a change from the start is no chance
-FARTHEST = 4.0  # times `within`, beyond which nothing is followed, however certain: no robot is that far
+# Prior standard deviations of a parameter:
+WITHIN = 1.0  # beyond what is certain, a value is followed at most: a chance costs no more than the prior
+FARTHEST = 4.0 * WITHIN  # beyond which nothing is followed, however certain: no robot is that far
+RATE = 0.01  # a second, at most: the whole prior takes minutes, so that a controller is never surprised
+THRESHOLD = 0.02  # that a parameter moved at least, before others are told: what drives do not show
 
 
 class AppliedModel:
@@ -26,16 +29,16 @@ class AppliedModel:
     A slip term that the start does not have starts at zero. A lag or delay that it does not have starts at
     what was learned: no number stands for none.
 
-    `within` bounds how far a value may be from what is certain, not from the start: a robot that is known to
+    `WITHIN` bounds how far a value may be from what is certain, not from the start: a robot that is known to
     be far from the start is followed, since what holds it back would be a wrong model for ever.
 
     Args:
-        rules: how far and how fast.
+        interval: s between two times at least that they are handed on.
         start: the off-line model; None: the kinematic baseline.
     """
 
-    def __init__(self, rules: ApplyTable, start: Model | None) -> None:
-        self._rules = rules
+    def __init__(self, interval: float, start: Model | None) -> None:
+        self._interval = interval
         self.start = values_of(start)
         self.values: dict[str, float] = dict(self.start)
         self.held: dict[str, str] = {}  # by parameter: what holds its value back
@@ -56,7 +59,7 @@ class AppliedModel:
         seconds = min(max(0.0, t - self._then), LONGEST_STEP) if math.isfinite(self._then) else 0.0
         self._then = t
         for name, wanted, prior in self._wanted(model, validity):
-            most = self._rules.rate * prior * seconds
+            most = RATE * prior * seconds
             now = self.values[name]
             self.values[name] = now + min(max(wanted - now, -most), most)
 
@@ -74,12 +77,12 @@ class AppliedModel:
 
     def due(self, t: float, model: Model) -> bool:
         """Say whether to send at `t` [s]: the interval is over, and something moved enough."""
-        if t < self._last + self._rules.interval:
+        if t < self._last + self._interval:
             return False
         priors = {row.name: row.prior_std for row in model.vector.rows}
         return any(
             abs(value - self._handed.get(name, self.start.get(name, 0.0)))
-            > self._rules.threshold * priors.get(name, math.inf)
+            > THRESHOLD * priors.get(name, math.inf)
             for name, value in self.values.items()
         )
 
@@ -114,14 +117,13 @@ class AppliedModel:
     def _reach(self, p: Parameter, start: float) -> float:
         """How far from its start a parameter is followed."""
         certain = max(0.0, abs(p.value - start) - CERTAIN * p.std)
-        within = self._rules.within * p.prior_std
-        return min(certain + within, FARTHEST * within)
+        return min(certain + WITHIN * p.prior_std, FARTHEST * p.prior_std)
 
     def _why_held(self, p: Parameter, goal: float, start: float) -> str:
         learned = " +- ".join(estimate_texts(p.value, p.std))
         return (
             f"{p.name} is held at {number_text(goal, 3)}: learned {learned} is farther from the start"
-            f" {number_text(start, 3)} than [live.apply] within = {self._rules.within:g} allows"
+            f" {number_text(start, 3)} than what is certain and {WITHIN:g} prior standard deviation allow"
         )
 
 

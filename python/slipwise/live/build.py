@@ -79,7 +79,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
         said.note(math.nan, "the start model remembers no surfaces: the memory starts empty")
     learner = learner or _new_learner(input_name, settings, before, wheels=transport.wheels)
     learning = Learning(learner, start, valid, said)
-    rules = rules_for(start, reverse=table.gates.reverse, stale_after=table.gates.stale_after)
+    rules = rules_for(start)
     gates = Gates(rules, input_name=input_name)
     intake = Intake(learner, gates, said, input_name=input_name, command_timeout=command_timeout)
     learning.of_stream = intake.contradictions
@@ -98,12 +98,11 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
         intake=intake,
         gates=gates,
         said=said,
-        adviser=MoveAdviser(every=table.moves_every, reverse=rules.reverse, turning=intake.turning),
+        adviser=MoveAdviser(reverse=rules.reverse, turning=intake.turning),
         watchers=watchers,
-        applied=AppliedModel(table.apply, start) if applying else None,
+        applied=AppliedModel(table.apply.interval, start) if applying else None,
         handover=Handover(table.apply, said) if applying else None,
         cache=cache,
-        save_every=table.save_every,
     )
     return Built(LiveNode(parts), learning, said)
 

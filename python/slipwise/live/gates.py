@@ -14,27 +14,21 @@ RECOVERY = 2.0  # s for which a gate stays closed after its cause: lag and delay
 REVERSE = -0.05  # m/s; slower than this is no driving in reverse
 FAR_TWIST = (0.25, 0.25, 0.5)  # v, vy [m/s], omega [rad/s] between two samples of one robot
 FAR_POSE = (0.75, 0.75)  # x, y [m]
+STALE_AFTER = 1.0  # s without input: drives that miss commands for so long have stopped
 
 
 @dataclass(frozen=True)
 class GateRules:
     """What closes the gates."""
 
-    stale_after: float = 1.0  # s without input
+    stale_after: float = STALE_AFTER  # s without input
     reverse: bool = True  # whether driving in reverse is learned
     saturation: tuple[float, float] = (math.inf, math.inf)  # |v| [m/s] and |omega| [rad/s] the drive reaches
 
 
-def rules_for(start: Model | None, *, reverse: bool | None, stale_after: float) -> GateRules:
-    """Return the rules that go with the start model.
-
-    Args:
-        start: the model that the node starts from, if any.
-        reverse: whether driving in reverse is learned; None: unless `start` never drove so.
-        stale_after: s without input after which it is stale.
-    """
-    if reverse is None:
-        reverse = start is None or start.content.range.speed[0] < REVERSE
+def rules_for(start: Model | None) -> GateRules:
+    """Return the rules for a start model, if any: one that never drove in reverse is not taught it."""
+    reverse = start is None or start.content.range.speed[0] < REVERSE
     top = (math.inf, math.inf)
     if start is not None:
         found = start.parameters
@@ -42,7 +36,7 @@ def rules_for(start: Model | None, *, reverse: bool | None, stale_after: float) 
         top = tuple(  # type: ignore[assignment]
             found[name].value if name in found and found[name].identified else math.inf for name in names
         )
-    return GateRules(stale_after, reverse, top)
+    return GateRules(STALE_AFTER, reverse, top)
 
 
 class Gates:

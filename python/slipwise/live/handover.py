@@ -36,9 +36,7 @@ class Handover:
         self._reached: set[str] = set()  # targets that got something
         self._sent: set[tuple[str, str]] = set()  # targets and names of parameters that nodes got
         self._options = ExportOptions(
-            ros_distro=rules.ros_distro or os.environ.get("ROS_DISTRO") or None,
-            update_rate=rules.update_rate,
-            planning_horizon=rules.planning_horizon,
+            ros_distro=os.environ.get("ROS_DISTRO") or None,
         )
 
     def withdraw(self, t: float, model: Model, why: str) -> list[AppliedParameters]:

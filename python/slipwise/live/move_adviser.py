@@ -20,6 +20,7 @@ from slipwise.models.parameter_table import physical_name
 from slipwise.planning import limits_of
 
 COUNT = 3  # moves
+LOOK_EVERY = 10.0  # s of the wall clock between two looks, at least: a person drives no move sooner
 LEVELS = 5  # of speed and yaw rate from zero to the fastest seen
 AT_ONCE = 0.001  # s of work, after which it is looked whether a sample waits; a piece more is begun before
 SHARE = 0.01  # of the time at most that is worked
@@ -46,13 +47,12 @@ class MoveAdviser:
     """Works in pieces of a millisecond or two, so that no sample waits for longer.
 
     Args:
-        every: s of the wall clock between two looks at least; 0: never.
         reverse: whether driving in reverse is learned; else no move does.
         turning: of what the robot was given.
     """
 
-    def __init__(self, *, every: float, reverse: bool, turning: Turning) -> None:
-        self._every, self._reverse, self._turning = every, reverse, turning
+    def __init__(self, *, reverse: bool, turning: Turning) -> None:
+        self._reverse, self._turning = reverse, turning
         self._work: _Work | None = None
         self._seen: Model | None = None
         self._next = -math.inf
@@ -60,7 +60,7 @@ class MoveAdviser:
 
     def due(self, model: Model | None, now: float) -> bool:
         """Whether there is something to do at a time of the wall clock [s]."""
-        if self._every <= 0.0 or model is None:
+        if model is None:
             return False
         return self._work is not None or (model is not self._seen and now >= self._next)
 
@@ -93,7 +93,7 @@ class MoveAdviser:
             found = NextMovesNow(t, (), (), parameters, str(reason))
         now = time.monotonic()
         self._work, self._spent = None, self._spent + now - begin
-        self._next = now + max(self._every, self._spent / SHARE)
+        self._next = now + max(LOOK_EVERY, self._spent / SHARE)
         return found
 
     def _look(self, model: Model) -> _Work:

@@ -40,6 +40,7 @@ ODOMETRY_EVERY = 0.02  # s of stamps
 STATUS_EVERY = 0.2  # s of the wall clock
 NOTICES_EVERY = 1.0  # s of the wall clock
 WORKS_AFTER = 5.0  # s of the wall clock with samples, after which what was loaded is sound
+SAVE_EVERY = 60.0  # s of the wall clock: a minute of learning is lost at most
 AHEAD = 2.0  # s that the present command is predicted
 
 _log = logging.getLogger(__name__)
@@ -60,7 +61,6 @@ class NodeParts:
     applied: AppliedModel | None = None
     handover: Handover | None = None
     cache: Cache | None = None
-    save_every: float = 60.0  # s of the wall clock
 
 
 class LiveNode:
@@ -91,7 +91,7 @@ class LiveNode:
             SlipwiseError: the transport cannot be used, or fails; or the state could not be saved at the end.
         """
         parts = self._parts
-        self._next["save"] = time.monotonic() + parts.save_every
+        self._next["save"] = time.monotonic() + SAVE_EVERY
         self._next["works"] = time.monotonic() + WORKS_AFTER
         try:
             parts.transport.subscribe(self._arrive)
@@ -306,7 +306,7 @@ class LiveNode:
             if self._parts.cache is not None:
                 self._parts.cache.works()
         if now >= self._next["save"]:
-            self._next["save"] = now + self._parts.save_every
+            self._next["save"] = now + SAVE_EVERY
             self.save()
 
     def _take_notices(self) -> None:

@@ -8,7 +8,7 @@ import queue
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from slipwise.live.cdr_reader import reader_of
 from slipwise.live.one_rotation import rotation_of
@@ -85,35 +85,57 @@ def with_oriented_imu(wire: RosWire, roles: Roles, say: Callable[[str], None]) -
     return roles
 
 
-def without_headings(wire: RosWire, roles: Roles, say: Callable[[str], None]) -> bool:
-    """Say whether the first poses have no rotation: they are positions, as `calibrate` takes them.
+class FirstPoses(NamedTuple):
+    """What the first poses show."""
+
+    positions: bool = False  # they have no rotation: they are positions, as `calibrate` takes them
+    attitude: bool = False  # they have a roll or a pitch: terms of gravity are tried
+
+
+def first_poses(wire: RosWire, roles: Roles, say: Callable[[str], None]) -> FirstPoses:
+    """Return what the first poses show; of satellite fixes, what the IMU beside them does.
 
     Args:
-        wire: brings its messages.
+        wire: brings messages.
         roles: that were chosen.
         say: called with what was found.
     """
-    if roles.pose is None or roles.pose.type == NAV_SAT_FIX:
-        return False
-    kind = POSE_VALUES[roles.pose.type]
-    rotated = _has_rotation(wire, roles.pose, lambda message: kind(message)[3:7])
-    if rotated is False:
+    fixes = roles.pose is not None and roles.pose.type == NAV_SAT_FIX
+    if roles.pose is None or (fixes and roles.imu is None):
+        return FirstPoses()
+    if fixes and roles.imu is not None:
+        angles = _first_angles(wire, roles.imu, IMU_VALUES[IMU])
+    else:
+        kind = POSE_VALUES[roles.pose.type]
+        angles = _first_angles(wire, roles.pose, lambda message: kind(message)[3:7])
+    angles = angles or []
+    angles = angles or []
+    positions = bool(angles) and not any(angles) and not fixes
+    if positions:
         say(f"the quaternions of {roles.pose.name} are no rotations: positions only")
-    return rotated is False
+    return FirstPoses(positions, any(each and (each[0] or each[1]) for each in angles))
 
 
 def _has_rotation(wire: RosWire, topic: Topic, values: Callable[[Any], Values]) -> bool | None:
     """Say whether one of the first messages has a rotation; None where too few come in time."""
-    found = queue.SimpleQueue[bool]()
+    angles = _first_angles(wire, topic, values)
+    return None if angles is None else any(angles)
+
+
+def _first_angles(
+    wire: RosWire, topic: Topic, values: Callable[[Any], Values]
+) -> list[tuple[float, float, float] | None] | None:
+    """Return (roll, pitch, yaw) of the first messages, or None for no rotation; None where too few come."""
+    found = queue.SimpleQueue[tuple[float, float, float] | None]()
     read = reader_of(topic.type, ros_types())
 
     def take(payload: bytes) -> None:
         with contextlib.suppress(Exception):  # what cannot be read says nothing; the transport says so
-            found.put(rotation_of(*values(read(payload))) is not None)
+            found.put(rotation_of(*values(read(payload))))
 
     wire.subscribe(topic.name, topic.type, take)
     with contextlib.suppress(queue.Empty):
-        return any(found.get(timeout=HEARD_WITHIN) for _ in range(_LISTENED_TO))
+        return [found.get(timeout=HEARD_WITHIN) for _ in range(_LISTENED_TO)]
     return None
 
 

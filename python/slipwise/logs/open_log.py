@@ -17,10 +17,9 @@ from slipwise.logs.corrections import scaled_inputs, turned_poses
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
-from slipwise.logs.remote import MOST_FETCHED, local_file
+from slipwise.logs.remote import local_file
 from slipwise.logs.run_name import run_name
 from slipwise.logs.time_span import cut_to_span
-from slipwise.logs.unpacking import unpacking_at_most
 
 _KNOWN = (
     "give a tidy CSV, CSV.gz or Parquet file, a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder), "
@@ -62,12 +61,11 @@ def _changed(options: LogOptions, changes: Mapping[str, Any]) -> LogOptions:
     return LogOptions.of({**given, **changes})
 
 
-def readable(path: Path, most_fetched: float = MOST_FETCHED) -> tuple[Path, bool]:
+def readable(path: Path) -> tuple[Path, bool]:
     """Return the file to read, a copy of what comes through a pipe or a net, and whether it is a bag.
 
     Args:
         path: the file, or an address on a server.
-        most_fetched: MiB that a file on a server may have.
 
     Raises:
         LogError: there is no such file, or it is of an unknown kind.
@@ -75,7 +73,7 @@ def readable(path: Path, most_fetched: float = MOST_FETCHED) -> tuple[Path, bool
     from slipwise.logs.bag_file import is_bag
 
     try:
-        file = local_file(path, "check the path", most_fetched)
+        file = local_file(path, "check the path")
         if file.is_dir() or is_bag(file):
             return file, True
         with file.open("rb") as stream:
@@ -97,8 +95,8 @@ def readable(path: Path, most_fetched: float = MOST_FETCHED) -> tuple[Path, bool
 
 
 def _open_one(path: Path, options: LogOptions) -> Log:
-    file, bag = readable(path, options.most_fetched)
-    with named_in_errors(path, file), unpacking_at_most(options.most_unpacked):
+    file, bag = readable(path)
+    with named_in_errors(path, file):
         log = _completed(_read(file, options, bag=bag), options)
         return _named(checked(log, options.unknown_after), file, path)
 

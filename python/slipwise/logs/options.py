@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from slipwise.errors import SettingsError
 from slipwise.log_fields import LOG_FIELDS, About, Kind, LogFields
 from slipwise.logs.held import UNKNOWN_AFTER
-from slipwise.logs.unpacking import LARGEST_UNPACKED
 
 if TYPE_CHECKING:
     from slipwise.logs.vehicle_description import ThrottleSteering, VehicleDescription
@@ -131,12 +130,11 @@ class LogOptions(LogFields):
 
 _SEVERAL = (Kind.topics, Kind.files)
 _FURTHER = {"pose_topic": "other_pose_topics", "poses": "other_poses"}
-_UNITS = {"METRES": "metres", "SECONDS": "seconds", "MIB": "MiB", "RADIANS": "radians"}
+_UNITS = {"METRES": "metres", "SECONDS": "seconds", "RADIANS": "radians"}
 _ADVICE = {
     "METRES": "measure it on the robot",
     "SECONDS": "such as 12.5",
     "RADIANS": "3.1416 is half a turn",
-    "MIB": f"at most {LARGEST_UNPACKED:g}",
 }
 
 
@@ -158,8 +156,7 @@ def _check(about: About, value: Any) -> None:
         return
     finite = isinstance(value, (int, float)) and math.isfinite(value)
     positive = about.kind is Kind.positive
-    most = LARGEST_UNPACKED if about.metavar == "MIB" else math.inf
-    if not finite or (positive and not 0.0 < value <= most):
+    if not finite or (positive and not value > 0.0):
         raise SettingsError(
             f"{about.option} must be a {'positive ' if positive else ''}number of "
             f"{_UNITS[about.metavar]}, not {value}",

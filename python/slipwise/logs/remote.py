@@ -18,13 +18,12 @@ from typing import TYPE_CHECKING, Any
 from slipwise.addresses import remote_url, shown
 from slipwise.errors import LogError
 from slipwise.extras import to_install
-from slipwise.log_fields import LogFields
 from slipwise.logs.piped import regular_file
 
 if TYPE_CHECKING:
     from fsspec import AbstractFileSystem
 
-MOST_FETCHED = LogFields.most_fetched  # [MiB]
+MOST_FETCHED = 4096.0  # [MiB]: hours of a robot; a larger file is a camera's, and is better copied once
 _BLOCK = 1 << 20
 _NOT_FOUND = 404  # of HTTP
 _PATIENCE = 60.0  # [s] without a byte
@@ -41,32 +40,32 @@ _CHANGED = (
 _PACKAGES = {"s3": "s3fs", "gs": "gcsfs", "az": "adlfs"}
 
 
-def staged(url: str, most_fetched: float = MOST_FETCHED) -> Path:
+def staged(url: str, most: float | None = None) -> Path:
     """Return a copy on this machine, which is removed when the program ends; each address is fetched once.
 
     Args:
         url: the address, of a scheme that `remote_url` knows.
-        most_fetched: MiB that the file may have.
+        most: MiB that the file may have; default MOST_FETCHED.
 
     Raises:
         LogError: a package is missing, the file cannot be fetched, is too large or comes cut off.
     """
-    asked = url, int(most_fetched * 1024 * 1024)
+    asked = url, int((MOST_FETCHED if most is None else most) * 1024 * 1024)
     if asked not in _copies:
         _copies[asked] = _fetched(*asked)
     return _copies[asked][1]
 
 
 @contextlib.contextmanager
-def lent(url: str, most_fetched: float = MOST_FETCHED) -> Iterator[Path]:
+def lent(url: str) -> Iterator[Path]:
     """Lend a copy on this machine, which `open_log` reads for this address, and remove it at the end.
 
     Raises:
         LogError: as `staged` does.
     """
-    asked = url, int(most_fetched * 1024 * 1024)
+    asked = url, int(MOST_FETCHED * 1024 * 1024)
     try:
-        yield staged(url, most_fetched)
+        yield staged(url)
     finally:
         if asked in _copies:
             _copies.pop(asked)[0].cleanup()
@@ -108,13 +107,13 @@ def _changed(about: Mapping[str, Any]) -> float | None:
     return None
 
 
-def local_file(path: Path, advice: str, most_fetched: float = MOST_FETCHED) -> Path:
+def local_file(path: Path, advice: str, most: float | None = None) -> Path:
     """Return the file to read: itself, or a copy of what comes through a pipe or from a server.
 
     Args:
         path: a file, a folder, a pipe or an address.
         advice: what to do where there is none.
-        most_fetched: MiB that a file on a server may have.
+        most: MiB that a file on a server may have; default MOST_FETCHED.
 
     Raises:
         LogError: there is no such file, it cannot be fetched, or is no regular file.
@@ -124,7 +123,7 @@ def local_file(path: Path, advice: str, most_fetched: float = MOST_FETCHED) -> P
         return regular_file(path)
     if url is None:
         raise LogError("no such file", where=str(path), advice=advice)
-    return staged(url, most_fetched)
+    return staged(url, most)
 
 
 _Folder = tempfile.TemporaryDirectory[str]
@@ -216,7 +215,7 @@ def _copy(system: AbstractFileSystem, url: str, copy: Path, most: int) -> int:
 
 
 def _too_large(where: str, most: int) -> LogError:
-    advice = "if this is right, allow more: most_fetched in MiB, or --most-fetched"
+    advice = "if this is right, copy the file, and give the copy"
     return LogError(f"more than {most / 1024 / 1024:g} MiB", where=where, advice=advice)
 
 

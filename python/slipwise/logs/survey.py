@@ -52,7 +52,7 @@ def survey_log(path: str | Path, options: LogOptions) -> Survey:
     from slipwise.logs.open_log import named_in_errors, readable
 
     path = Path(path)
-    file, bag = readable(path, options.most_fetched)
+    file, bag = readable(path)
     with named_in_errors(path, file):
         if not bag and (kind := flight_format(file)) is not None:
             return _survey_flight(path, file, kind, options)

@@ -3,20 +3,14 @@
 
 from __future__ import annotations
 
-import contextlib
 import sys
-from collections.abc import Callable, Iterator
-from contextvars import ContextVar
+from collections.abc import Callable
 from typing import Any, Protocol
 
 from slipwise.errors import LogError
-from slipwise.log_fields import LogFields
 
 MEBIBYTE = 1 << 20
-MOST_UNPACKED = LogFields.most_unpacked  # MiB: 5 million rows, and more than recorders put into a chunk
-LARGEST_UNPACKED = 1e6  # MiB
-
-_most: ContextVar[float] = ContextVar("most_unpacked", default=MOST_UNPACKED)
+MOST_UNPACKED = 512.0  # MiB: 5 million rows, and more than recorders put into a chunk
 
 
 class _Unpacker(Protocol):
@@ -29,25 +23,15 @@ class _Unpacker(Protocol):
     def decompress(self, data: bytes, max_length: int) -> bytes: ...
 
 
-@contextlib.contextmanager
-def unpacking_at_most(mebibytes: float) -> Iterator[None]:
-    """Let no compressed piece that is read inside unpack to more than this [MiB]."""
-    before = _most.set(mebibytes)
-    try:
-        yield
-    finally:
-        _most.reset(before)
-
-
 def most_bytes() -> int:
     """Return how many bytes a piece may unpack to."""
-    return int(_most.get() * MEBIBYTE)
+    return int(MOST_UNPACKED * MEBIBYTE)
 
 
 def too_large(what: str, where: str = "") -> LogError:
     """Return the error about a piece that unpacks to more than is allowed."""
-    advice = "if this is right, allow more: most_unpacked in MiB, or --most-unpacked"
-    return LogError(f"{what} unpacks to more than {_most.get():g} MiB", where=where, advice=advice)
+    advice = "if this is right, unpack it first, or record smaller chunks"
+    return LogError(f"{what} unpacks to more than {MOST_UNPACKED:g} MiB", where=where, advice=advice)
 
 
 def bound_bag_readers() -> None:

@@ -11,7 +11,7 @@ from sample_logs import PLAIN, Drive, simulated_log
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
-from slipwise.calibration.settings import AUTO_BASES
+from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.logs import Log
 

@@ -8,6 +8,7 @@ import pytest
 
 from slipwise.calibration import load_settings, make_settings
 from slipwise.calibration.log_table import LogTable
+from slipwise.calibration.settings import users_dump
 from slipwise.cli.run_folder import to_toml
 from slipwise.errors import SettingsError
 from slipwise.logs import LogOptions
@@ -41,8 +42,8 @@ def test_settings_become_options_and_given_ones_go_before() -> None:
 
 
 def test_settings_with_columns_are_written_as_a_file_that_reads_back(tmp_path: Path) -> None:
-    settings = make_settings({"log": {"columns": {"t": "my time", "x": 'a"b'}, "pose_clock_offset": "auto"}})
-    (tmp_path / "a.toml").write_text(to_toml(settings.model_dump(exclude_none=True)))
+    settings = make_settings({"log": {"columns": {"t": "my time", "x": 'a"b'}, "vehicle": "husky"}})
+    (tmp_path / "a.toml").write_text(to_toml(users_dump(settings)))
     assert load_settings(tmp_path / "a.toml") == settings
 
 

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+from pydantic import BaseModel
 from sample_logs import Drive, simulated_log
 
 from slipwise import _core
 from slipwise.calibration import Settings, calibrate, load_settings, make_settings
 from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.gone_keys import GONE
+from slipwise.calibration.keys import keys_of
+from slipwise.calibration.settings import users_dump
 from slipwise.errors import OlderNames, SettingsError
 from slipwise.segments import WindowRules
 
@@ -78,8 +83,6 @@ vehicle = "husky"
 command_scale = [0.5, 1.0]
 wheel_scale = [0.1, -1.0]
 pose_yaw_offset = 0.2
-most_unpacked = 64.0
-most_fetched = 32.0
 poses = "p.txt"
 pose_clock_offset = 1.5
 command_timeout = 0.6
@@ -91,9 +94,6 @@ columns = {}
 frame = "none"
 time_constant = 90.0
 std = 0.02
-
-[vehicle]
-wheel_separation = 1.08
 
 [sensor_extrinsics]
 x = 1.5
@@ -115,8 +115,8 @@ def key_paths(table: object, at: str = "") -> set[str]:
     return {key for name, value in table.items() for key in key_paths(value, f"{at}.{name}".strip("."))}
 
 
-def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
-    settings = load_settings(written(tmp_path, EVERY_KEY))
+def test_every_key_and_constant_is_accepted_and_reaches_its_place() -> None:
+    settings = make_settings(tomllib.loads(EVERY_KEY))
     assert key_paths(settings.model_dump(exclude_unset=True)) == key_paths(Settings().model_dump())
     assert settings.rules() == WindowRules(0.4, sensor=(1.5, -0.2, 0.1))
     assert settings.segment_length("wheel") == settings.segment_length("command") == 1.5
@@ -131,7 +131,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert core.noise.shape.fraction == [0.04, 0.04, 0.04]
     assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
     assert core.noise.adapt is False
-    assert settings.vehicle.wheel_separation == 1.08
+    assert settings.wheel_separation == 0.5
     log = settings.log_options()
     assert (log.command_topic, log.pose_topic, log.wheel_topic, log.imu_topic) == ("/c", "/p", "none", "/i")
     assert (log.pose_frame, log.child_frame, log.left_joints, log.right_joints) == (
@@ -147,7 +147,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
         Path("p.txt"),
     )
     assert (log.command_scale, log.wheel_scale) == ((0.5, 1.0), (0.1, -1.0))
-    assert (log.pose_yaw_offset, log.most_unpacked, log.most_fetched) == (0.2, 64.0, 32.0)
+    assert log.pose_yaw_offset == 0.2
     assert (log.pose_clock_offset, log.start, log.end, log.unknown_after) == (1.5, 1.0, 2.0, 0.4)
     assert log.command_timeout == 0.6
     drift = settings.smoothing.drift_settings()
@@ -166,13 +166,46 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (basis.lon, basis.lat, basis.ang) == (["V", "V*abs(w)"], ["w"], ["w", "V*w"])
 
 
-def test_there_are_few_enough_keys_to_read() -> None:
-    learning = {key for key in key_paths(Settings().model_dump()) if not key.startswith("log.")}
-    assert len(learning) <= 35  # smoothing.smooth was an option before
+def every_path(model: type[BaseModel], at: str = "") -> set[str]:
+    """Return the paths of all fields in nested tables."""
+    found = set()
+    for name, about in model.model_fields.items():
+        inner, path = about.annotation, f"{at}.{name}".strip(".")
+        nested = isinstance(inner, type) and issubclass(inner, BaseModel)
+        found |= every_path(inner, path) if nested else {path}
+    return found
 
 
-def test_every_key_set_still_calibrates(tmp_path: Path) -> None:
-    settings = load_settings(written(tmp_path, EVERY_KEY))
+def test_users_have_few_keys_and_hear_what_holds_in_place_of_older_ones(tmp_path: Path) -> None:
+    keys = {each.path for each in keys_of(Settings)}
+    assert len(keys) <= 40
+    constants = every_path(Settings) - keys
+    assert constants <= GONE.keys() | {"live.vehicle"}
+    assert not keys & GONE.keys()
+    content = {
+        "auto": {"structures": ["joint"]},
+        "live": {"save_every": 9.0, "host": "::1"},
+        "vehicle": {"wheel_separation": 1.08},
+        "filter": {"huber": 3.0},
+    }
+    with pytest.warns(OlderNames) as said:
+        settings = load_settings(written(tmp_path, ""), content)
+    notes = " ".join(str(each.message) for each in said)
+    for words in (
+        "auto.structures is gone: slipwise keeps the one that predicts best",
+        "filter.huber is a constant of slipwise",
+        "live.save_every is gone: the cache is written every 60 s; what stands there is not read",
+        "live.host is live.address now",
+        "vehicle.wheel_separation is log.wheel_separation now",
+    ):
+        assert words in notes
+    assert (settings.filter.huber, settings.wheel_separation, settings.live.host) == (3.0, 1.08, "::1")
+    assert users_dump(settings)["filter"] == {"huber": 3.0}  # a folder of a run gives the same again
+    assert key_paths(users_dump(Settings())) <= keys
+
+
+def test_every_key_set_still_calibrates() -> None:
+    settings = make_settings(tomllib.loads(EVERY_KEY))
     model = calibrate(simulated_log(Drive(seconds=40.0)), input="wheel", settings=settings).model
     names = [parameter.name for parameter in model.content.parameters]
     assert names == [
@@ -226,7 +259,7 @@ def test_wrong_settings_are_refused_with_the_key_and_the_file(
         ("[noise]\nfraction = [1e300, 0.0, 0.0]", r"noise\.fraction\.0: must be at most 1e\+06"),
         ("[prior]\nclock_offset_std = 1e300", r"prior\.clock_offset_std: must be at most 100"),
         ("[prior]\nslip_fraction = 1e-300", r"prior\.slip_fraction: must be at least 1e-09"),
-        ("[vehicle]\ntrack = 1000000000", r"vehicle\.wheel_separation: must be at most 100"),
+        ("[vehicle]\ntrack = 1000000000", r"log\.wheel_separation: must be at most 1e\+06"),
         ("basis = 3", "basis: must be text, not 3"),
         ("basis", r"not a TOML file: .*write lines like basis = \"auto\""),
         ("basis = 'a'\nbasis = 'b'", "not a TOML file"),
@@ -290,7 +323,7 @@ def test_keys_of_the_version_before_are_read_and_said() -> None:
     assert settings.sensor_extrinsics.x == 0.3
     assert settings.segment_length("wheel") == 1.9
     assert settings.prior.time_constant == 0.2
-    assert settings.vehicle.wheel_separation == 0.5
+    assert settings.wheel_separation == 0.5
 
 
 def test_older_keys_of_live_are_read_where_name_was_that_of_the_node() -> None:

@@ -11,8 +11,9 @@ from sample_logs import Drive, simulated_log
 from sample_slopes import Hills, hilly_log
 
 from slipwise.calibration import calibrate
+from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.calibration.motion_learner import MotionLearner
-from slipwise.calibration.settings import AUTO_BASES, Settings, make_settings
+from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.sloping_ground import (
     SIDEWAYS_BASES,
     SLOPE_BASES,

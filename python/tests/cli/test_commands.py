@@ -82,11 +82,11 @@ def test_calibrate_says_what_was_learned_then_the_verdict_then_the_numbers(
 
 
 def test_the_settings_of_a_run_give_the_same_model_again(slipwise: Slipwise, drive_csv: Path) -> None:
-    Path("mine.toml").write_text("basis = 'drive-5'\n[filter]\nhuber = 2.5\n[auto]\nbases = ['edd-2']\n")
+    Path("mine.toml").write_text("basis = 'drive-5'\n[prior]\nslip_fraction = 0.2\n")
     slipwise("calibrate", drive_csv, "--settings", "mine.toml", "--no-report", "-o", "first.yaml")
     settings = Path("runs/latest/settings.toml")
     assert load_settings(settings) == load_settings(Path("mine.toml"))
-    assert tomllib.loads(settings.read_text())["filter"]["huber"] == 2.5
+    assert tomllib.loads(settings.read_text())["prior"]["slip_fraction"] == 0.2
     slipwise("calibrate", drive_csv, "--settings", settings, "--no-report", "-o", "second.yaml")
     assert Path("first.yaml").read_bytes() == Path("second.yaml").read_bytes()
 

@@ -38,7 +38,7 @@ def test_with_a_memory_a_log_is_replayed_into_the_model_that_calibrate_writes_wi
     sw.save_log(hilly_log(1, Hills(seconds=60.0)), hills)
     monkeypatch.chdir(tmp_path)
     replay = ["live", "--replay", str(hills), "--rate", "0", "--quiet"]
-    assert run([*replay, "--memory", "--set", "live.surface=grass", "-o", str(live)]) == 0
+    assert run([*replay, "--memory", "--surface", "grass", "-o", str(live)]) == 0
     learn = ["calibrate", "--memory", "--no-report"]
     assert run([*learn, str(hills), "--surface", "grass", "-o", str(log)]) in (0, 1)
     assert live.read_bytes() == log.read_bytes()
@@ -51,7 +51,7 @@ def test_with_a_memory_a_log_is_replayed_into_the_model_that_calibrate_writes_wi
 
 
 def test_labels_without_a_memory_are_refused(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["live", "--replay", str(drive), "--rate", "0", "--set", "live.surface=sand"]) == 2
+    assert run(["live", "--replay", str(drive), "--rate", "0", "--surface", "sand"]) == 2
     assert "add --memory" in capsys.readouterr().err
 
 
@@ -60,7 +60,7 @@ def test_a_start_model_that_remembers_surfaces_is_begun_with(
 ) -> None:
     first, second = tmp_path / "first.yaml", tmp_path / "second.yaml"
     replay = ["live", "--replay", str(drive), "--rate", "0", "--input", "wheel", "--memory"]
-    assert run([*replay, "--set", "live.surface=hall", "--quiet", "-o", str(first)]) == 0
+    assert run([*replay, "--surface", "hall", "--quiet", "-o", str(first)]) == 0
     capsys.readouterr()
     assert run([*replay, "--model", str(first), "-o", str(second)]) == 0
     assert "the surface is hall, as before" in capsys.readouterr().out
@@ -154,7 +154,7 @@ def test_what_cannot_be_is_one_line(capsys: pytest.CaptureFixture[str], subtests
         (["--transport", "carrier-pigeon"], "transport"),
         (["--set", "live.apply.mode=always"], "apply"),
         (["--set", "live.node=two words"], "node"),
-        (["--set", "live.domain=999"], "domain"),
+        (["--set", "live.network=maybe"], "network"),
         (["--replay", "nowhere.csv"], "no such file"),
         (["--transport", "udp", "--set", "live.address=nowhere"], "cannot listen"),
     ]:

@@ -79,8 +79,13 @@ def test_a_setting_on_the_command_line_goes_before_the_file(slipwise: Slipwise, 
     Path("a.toml").write_text("[log]\nstart = 10.0\nend = 20.0\n")
     given = ("convert", drive_csv, "-o", "a.csv", "--settings", "a.toml")
     assert "only 10 s to 20 s" in slipwise(*given).out
-    chosen = chosen_settings(Path("a.toml"), ["log.end=30", "basis=edd-2", "filter.huber=3"])
-    assert (chosen.log.start, chosen.log.end, chosen.basis, chosen.filter.huber) == (10.0, 30.0, "edd-2", 3.0)
+    chosen = chosen_settings(Path("a.toml"), ["log.end=30", "basis=edd-2", "prior.slip_fraction=0.5"])
+    assert (chosen.log.start, chosen.log.end, chosen.basis, chosen.prior.slip_fraction) == (
+        10.0,
+        30.0,
+        "edd-2",
+        0.5,
+    )
     assert "sets no key" in slipwise("inspect", drive_csv, "--set", "huber").line
     assert "filter.hubber" in slipwise("inspect", drive_csv, "--set", "filter.hubber=3").line
 

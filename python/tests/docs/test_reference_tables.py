@@ -4,13 +4,15 @@
 import re
 import runpy
 import tomllib
-from typing import Any
+import warnings
 
 from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
 
 from slipwise import _core, student
 from slipwise.calibration import consistency, identifiability, judgement, statistics
-from slipwise.calibration.settings import SEGMENT_SECONDS, Settings, make_settings
+from slipwise.calibration.learning_tables import SEGMENT_SECONDS
+from slipwise.calibration.settings import Settings, make_settings, user_settings
+from slipwise.errors import OlderNames
 from slipwise.evaluation.prediction_file import COLUMNS
 from slipwise.evaluation.result import Score
 from slipwise.logs.vocabulary import NUMERIC, TEXT
@@ -28,25 +30,6 @@ def read_derivations() -> str:
     return "\n".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "derivations").glob("*.md")))
 
 
-def keys(table: dict[str, Any], prefix: str = "") -> set[str]:
-    """Return the dotted names of all values in nested tables."""
-    found: set[str] = set()
-    for key, value in table.items():
-        found |= keys(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}"}
-    return found
-
-
-def without_default(block: str) -> set[str]:
-    """Return the dotted names of keys that are shown as comments, since they have no default."""
-    found, section = set(), ""
-    for line in block.splitlines():
-        section = line[1 : line.index("]")] if line.startswith("[") else section
-        commented = re.match(r"# (\w+) = ", line)
-        if commented is not None:
-            found.add(f"{section}.{commented[1]}")
-    return found
-
-
 def constants(file: str, *names: str) -> list[float]:
     """Return constants of a source of the core."""
     text = (ROOT / f"cpp/src/{file}.cpp").read_text(encoding="utf-8")
@@ -55,26 +38,22 @@ def constants(file: str, *names: str) -> list[float]:
 
 
 def test_the_settings_page_lists_every_key_with_its_default() -> None:
+    page = read("settings.md")
+    written = runpy.run_path(str(DOCS / "settings_page.py"))["with_rows"](page)
+    assert written == page, "run python docs/settings_page.py"
     (block,) = blocks(DOCS / "settings.md", "toml")
-    shown = tomllib.loads(block)
-    assert make_settings(shown) == Settings()
-    every_key = keys(Settings().model_dump() | {"live": Settings().live.model_dump()})
-    assert keys(shown) | without_default(block) == every_key, "say in docs/settings.md what is new"
-    defaults = re.search(r"without it ([\d.]+) from wheel speeds and ([\d.]+) from commands", block)
+    assert make_settings(tomllib.loads(block)) == Settings()
+    defaults = re.search(r"default ([\d.]+) from wheel speeds, ([\d.]+) from commands", block)
     assert defaults is not None
     assert (float(defaults[1]), float(defaults[2])) == (SEGMENT_SECONDS["wheel"], SEGMENT_SECONDS["command"])
 
 
-def test_the_settings_page_has_the_options_of_reading_as_they_are_declared() -> None:
-    page = read("settings.md")
-    written = runpy.run_path(str(DOCS / "settings_page.py"))["with_rows"](page)
-    assert written == page, "run python docs/settings_page.py"
-
-
-def test_the_settings_blocks_of_other_pages_are_valid() -> None:
+def test_the_settings_blocks_of_other_pages_are_valid_and_without_older_keys() -> None:
     for page in sorted(DOCS.glob("*.md")):
         for block in blocks(page, "toml"):
-            make_settings(tomllib.loads(block)).bases()
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", OlderNames)
+                user_settings(tomllib.loads(block), where=page.name).bases()
 
 
 def test_the_table_of_bases_has_the_terms_that_ship() -> None:

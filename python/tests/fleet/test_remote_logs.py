@@ -14,6 +14,7 @@ from logs.file_server import Server, serving
 
 from slipwise.fleet import LogTask, Outcome, Store, find_logs, learn_task
 from slipwise.fleet.learn_fleet import Count, learn_fleet
+from slipwise.logs import remote
 
 pytest.importorskip("aiohttp")
 pytest.importorskip("fsspec")
@@ -87,16 +88,15 @@ def test_address_whose_server_tells_no_version_is_fetched_but_not_learned_again(
 
 
 def test_what_cannot_be_fetched_costs_its_own_log_only_and_is_tried_again(
-    server: Server, tmp_path: Path
+    server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(remote, "MOST_FETCHED", 1.0)
     server.files |= {"/red/a.csv": SHORT, "/red/large.csv": bytes(3 << 20)}
-    settings = tmp_path / "settings.toml"
-    settings.write_text("[log]\nmost_fetched = 1.0\n", encoding="utf-8")
     names = ("a.csv", "gone.csv?key=secret", "large.csv", "locked.csv")
     found = find_logs([f"{server.address}/red/{name}" for name in names])
     for asked in (1, 1):
         here = Here()
-        count = learn_fleet(found, Store(tmp_path / "out"), here, settings=settings)
+        count = learn_fleet(found, Store(tmp_path / "out"), here)
         assert count.unusable + count.known == asked
         why = {log.rpartition("/")[2]: reason for log, reason in count.failed}
         assert sorted(why) == ["gone.csv", "large.csv", "locked.csv"]

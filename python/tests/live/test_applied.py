@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from sample_models import make_model, named
 
-from slipwise.calibration.live_table import ApplyTable
 from slipwise.live.applied import FARTHEST, LONGEST_STEP, AppliedModel, physical
 from slipwise.live.outputs import Validity
 from slipwise.models import Model
@@ -27,8 +26,7 @@ def estimated(_name: str) -> Validity:
 
 
 def test_it_never_moves_faster_than_stated_and_arrives() -> None:
-    rules = ApplyTable(rate=0.01, within=5.0)
-    applied, goal = AppliedModel(rules, START), learned(0.02)
+    applied, goal = AppliedModel(10.0, START), learned(0.02)
     prior = {p.name: p.prior_std for p in goal.content.parameters}
     before = dict(applied.values)
     applied.step(0.0, goal, estimated)
@@ -41,8 +39,8 @@ def test_it_never_moves_faster_than_stated_and_arrives() -> None:
     assert all(applied.values[name] == pytest.approx(0.02) for name in NAMES)
 
 
-def arrived(rules: ApplyTable, goal: Model) -> AppliedModel:
-    applied = AppliedModel(rules, START)
+def arrived(goal: Model) -> AppliedModel:
+    applied = AppliedModel(10.0, START)
     for k in range(2000):
         applied.step(float(k), goal, estimated)
     return applied
@@ -50,7 +48,7 @@ def arrived(rules: ApplyTable, goal: Model) -> AppliedModel:
 
 def test_a_skid_steer_that_is_known_well_is_followed_all_the_way() -> None:
     goal = make_model(replace(named("edd-2"), values={"ang.w": -0.43}))  # +- 0.01, the prior's is 0.3
-    applied = arrived(ApplyTable(), goal)
+    applied = arrived(goal)
     assert applied.values["ang.w"] == pytest.approx(-0.43)
     assert applied.held == {}
 
@@ -58,7 +56,7 @@ def test_a_skid_steer_that_is_known_well_is_followed_all_the_way() -> None:
 def test_what_is_not_certain_is_held_within_its_range_about_the_start_and_that_is_said() -> None:
     goal = make_model(replace(named("edd-2"), values={"ang.w": -0.43}, std=0.2))
     prior = {p.name: p.prior_std for p in goal.content.parameters}
-    applied = arrived(ApplyTable(), goal)
+    applied = arrived(goal)
     assert applied.values["ang.w"] == pytest.approx(-prior["ang.w"])
     assert applied.held.keys() == {"ang.w"}
     assert "ang.w is held at -0.3" in applied.held["ang.w"]
@@ -66,14 +64,14 @@ def test_what_is_not_certain_is_held_within_its_range_about_the_start_and_that_i
 
 def test_nothing_is_followed_beyond_what_a_robot_can_be() -> None:
     goal = learned(1e3)
-    applied = arrived(ApplyTable(rate=10.0, within=0.5), goal)
+    applied = arrived(goal)
     for p in goal.content.parameters:
-        assert applied.values[p.name] == pytest.approx(0.5 * FARTHEST * p.prior_std)
+        assert applied.values[p.name] == pytest.approx(FARTHEST * p.prior_std)
     assert applied.held.keys() == set(NAMES)
 
 
 def test_nothing_moves_while_the_model_or_the_parameter_is_not_valid() -> None:
-    applied, goal = AppliedModel(ApplyTable(), START), learned(0.02)
+    applied, goal = AppliedModel(10.0, START), learned(0.02)
 
     def first_alone(name: str) -> Validity:
         return "estimated" if name == NAMES[0] else "invalid"
@@ -88,7 +86,7 @@ def test_nothing_moves_while_the_model_or_the_parameter_is_not_valid() -> None:
 
 
 def test_time_without_a_valid_model_is_not_made_up_for() -> None:
-    applied, goal = AppliedModel(ApplyTable(rate=0.01), START), learned(0.02)
+    applied, goal = AppliedModel(10.0, START), learned(0.02)
     applied.step(0.0, goal, estimated)
     applied.step(1000.0, None, estimated)
     applied.step(1001.0, goal, estimated)
@@ -97,7 +95,7 @@ def test_time_without_a_valid_model_is_not_made_up_for() -> None:
 
 
 def test_a_long_standstill_is_not_made_up_for_in_one_step() -> None:
-    applied, goal = AppliedModel(ApplyTable(rate=0.01, within=5.0), START), learned(0.9)
+    applied, goal = AppliedModel(10.0, START), learned(0.9)
     prior = {p.name: p.prior_std for p in goal.content.parameters}
     for k in range(3):  # judgements at the usual distance move it
         applied.step(2.0 * k, goal, estimated)
@@ -109,7 +107,7 @@ def test_a_long_standstill_is_not_made_up_for_in_one_step() -> None:
 
 
 def test_others_are_told_after_the_interval_and_only_of_a_change() -> None:
-    applied, goal = AppliedModel(ApplyTable(interval=10.0, threshold=0.02, rate=0.01), START), learned(0.02)
+    applied, goal = AppliedModel(10.0, START), learned(0.02)
     told = []
     for k in range(200):
         applied.step(0.5 * k, goal, estimated)
@@ -122,7 +120,7 @@ def test_others_are_told_after_the_interval_and_only_of_a_change() -> None:
 
 
 def test_its_covariance_holds_how_far_it_is_from_what_was_learned() -> None:
-    applied, goal = AppliedModel(ApplyTable(), START), learned(0.1)
+    applied, goal = AppliedModel(10.0, START), learned(0.1)
     applied.step(0.0, goal, estimated)
     given = applied.model(goal)
     assert given.mean == pytest.approx(0.0)
@@ -130,15 +128,15 @@ def test_its_covariance_holds_how_far_it_is_from_what_was_learned() -> None:
 
 
 def test_a_call_takes_all_at_once_but_clipped() -> None:
-    applied, goal = AppliedModel(ApplyTable(within=0.5), START), learned(0.02)
+    applied, goal = AppliedModel(10.0, START), learned(1e3)
     applied.jump(goal, estimated)
     for p in goal.content.parameters:
-        assert applied.values[p.name] == pytest.approx(min(0.02, 0.5 * p.prior_std))
+        assert applied.values[p.name] == pytest.approx(FARTHEST * p.prior_std)
 
 
 def test_without_a_start_model_slip_starts_at_zero_and_a_delay_at_what_was_learned() -> None:
     goal = make_model(replace(named("edd-2"), commands=True))
-    applied = AppliedModel(ApplyTable(), None)
+    applied = AppliedModel(10.0, None)
     applied.step(0.0, goal, estimated)
     assert physical("delay_v", applied.values) == pytest.approx(goal["delay_v"].value)
     assert all(applied.start[name] == 0.0 for name in NAMES)

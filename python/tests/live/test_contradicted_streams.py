@@ -27,6 +27,7 @@ from scripted_node import Scripted, run_node
 from slipwise.calibration.live_table import ApplyTable, LiveTable
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.export import export_model
+from slipwise.live import applied
 from slipwise.live.build import Built
 from slipwise.live.outputs import AppliedParameters, ModelText
 from slipwise.live.replay import samples_of
@@ -93,10 +94,11 @@ def lived(log: Log, folder: Path, input_name: str = "wheel", **table: object) ->
         targets=["diff-drive", "amcl"],
         set_parameters=True,
         interval=1.0,
-        rate=1.0,
-        ros_distro="jazzy",
     )
-    return run_node(list(samples_of(run)), LiveTable(apply=apply, **table), input_name)  # type: ignore[arg-type]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(applied, "RATE", 1.0)  # at once
+        patch.setenv("ROS_DISTRO", "jazzy")
+        return run_node(list(samples_of(run)), LiveTable(apply=apply, **table), input_name)  # type: ignore[arg-type]
 
 
 def faults_of(built: Built, transport: Scripted, folder: Path) -> list[str]:

@@ -39,10 +39,9 @@ def test_reverse_closes_them_only_where_it_was_never_learned() -> None:
 def test_reverse_is_learned_from_nothing_and_from_a_model_that_drove_so() -> None:
     forward = made((0.0, 1.0))
     both = made((-0.5, 1.0))
-    assert rules_for(None, reverse=None, stale_after=1.0).reverse
-    assert not rules_for(forward, reverse=None, stale_after=1.0).reverse
-    assert rules_for(both, reverse=None, stale_after=1.0).reverse
-    assert rules_for(forward, reverse=True, stale_after=1.0).reverse
+    assert rules_for(None).reverse
+    assert not rules_for(forward).reverse
+    assert rules_for(both).reverse
 
 
 def test_a_command_beyond_what_the_drive_reaches_closes_them() -> None:

@@ -21,10 +21,14 @@ WHEEL = make_model(named("edd-2", lon__V=-0.05, ang__w=-0.4))
 COMMAND = make_model(replace(named("edd-2", ang__w=-0.4), commands=True, limits=LIMITS))
 
 
-def handed(model: Any, times: int = 31, **rules: Any) -> tuple[list[AppliedParameters], list[str]]:
+def handed(
+    model: Any, times: int = 31, distro: str = "", **rules: Any
+) -> tuple[list[AppliedParameters], list[str]]:
     """What nodes were told, and what was said."""
     said = Said()
-    handover = Handover(ApplyTable(mode="auto", set_parameters=True, **rules), said)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DISTRO", distro)  # empty: as without it
+        handover = Handover(ApplyTable(mode="auto", set_parameters=True, **rules), said)
     told = [each for k in range(times) for each in handover.hand_on(10.0 * k, model)]
     handover.finish(1000.0)
     return told, [note.text for note in said.take_new()]
@@ -36,7 +40,7 @@ def test_no_node_is_told_a_limit_or_what_it_takes_at_a_restart_alone(
     for distro in DISTROS:
         with subtests.test(distro=distro):
             for model in (WHEEL, COMMAND):
-                told, _ = handed(model, 2, targets=list(TABLES), ros_distro=distro, folder=str(tmp_path))
+                told, _ = handed(model, 2, distro, targets=list(TABLES), folder=str(tmp_path))
                 for each in told:
                     rows = TABLES[each.target].of_distro(distro if TABLES[each.target].differs else None)
                     assert each.values
@@ -50,7 +54,7 @@ def test_no_node_is_told_a_limit_or_what_it_takes_at_a_restart_alone(
 
 
 def test_what_wants_a_restart_is_said_once_with_its_file(tmp_path: Path) -> None:
-    told, said = handed(WHEEL, targets=["diff-drive"], ros_distro="jazzy", folder=str(tmp_path))
+    told, said = handed(WHEEL, distro="jazzy", targets=["diff-drive"], folder=str(tmp_path))
     assert told == []
     (text,) = [text for text in said if "restarted" in text]
     assert "wheel_separation_multiplier" in text
@@ -67,7 +71,7 @@ def test_a_filter_without_a_callback_is_not_told(tmp_path: Path) -> None:
 
 
 def test_a_delay_reaches_a_controller_that_has_it() -> None:
-    told, _ = handed(COMMAND, 1, targets=["mppi"], ros_distro="lyrical")
+    told, _ = handed(COMMAND, 1, "lyrical", targets=["mppi"])
     assert told[0].node == "/controller_server"
     assert {"FollowPath.model_delay_vx", "FollowPath.model_delay_wz"} <= told[0].values.keys()
     assert not any("_max" in name or "motion_model" in name for name in told[0].values)

@@ -11,10 +11,10 @@ from functools import cache
 import numpy as np
 from scripted_node import SLIP, driven, run_node
 
-from slipwise.calibration.live_table import GatesTable, LiveTable
-from slipwise.live.move_adviser import MoveAdviser, Turning
+from slipwise.calibration.live_table import LiveTable
+from slipwise.live.move_adviser import LOOK_EVERY, MoveAdviser, Turning
 from slipwise.live.outputs import NextMovesNow
-from slipwise.live.samples import Command, RunStart, Sample, Wheels
+from slipwise.live.samples import Command, Sample, Wheels
 from slipwise.models import Model
 
 SHORT = replace(SLIP, seconds=25.0)
@@ -65,20 +65,18 @@ def test_a_node_gives_three_moves_within_the_speeds_it_saw_and_a_bar_for_every_p
 
 def test_a_robot_that_turned_in_wide_curves_alone_is_asked_for_no_tighter_one() -> None:
     model = learned_model()
-    v, omega, _ = commands_of(MoveAdviser(every=1.0, reverse=True, turning=turned(0.4)), model)
+    v, omega, _ = commands_of(MoveAdviser(reverse=True, turning=turned(0.4)), model)
     assert (np.abs(omega) <= 0.4 * np.maximum(np.abs(v), 0.05) * 1.01).all()
     assert len(v) == 3
 
 
 def test_what_is_not_learned_is_not_asked_for() -> None:
-    v, _, _ = commands_of(MoveAdviser(every=1.0, reverse=False, turning=turned(5.0)), learned_model())
+    v, _, _ = commands_of(MoveAdviser(reverse=False, turning=turned(5.0)), learned_model())
     assert (v >= 0.0).all()
-    found, _ = moves_of(driven(SHORT), gates=GatesTable(reverse=False))
-    assert all(move.v >= 0.0 for each in found for move in each.moves)
 
 
 def test_before_the_robot_turned_it_is_said_what_to_do() -> None:
-    adviser = MoveAdviser(every=1.0, reverse=True, turning=Turning())
+    adviser = MoveAdviser(reverse=True, turning=Turning())
     _, _, found = commands_of(adviser, learned_model())
     assert found.moves == ()
     assert "slow curve" in found.why
@@ -93,7 +91,7 @@ def test_a_command_that_is_no_number_is_no_turn() -> None:
 
 def test_it_looks_once_for_a_model_and_not_again_before_its_time() -> None:
     model = learned_model()
-    adviser = MoveAdviser(every=1e6, reverse=True, turning=turned(5.0))
+    adviser = MoveAdviser(reverse=True, turning=turned(5.0))
     now = time.monotonic()
     assert not adviser.due(None, now)
     assert adviser.due(model, now)
@@ -104,10 +102,5 @@ def test_it_looks_once_for_a_model_and_not_again_before_its_time() -> None:
     assert pieces > 0
     other = Model(model.content)
     assert not adviser.due(other, time.monotonic())
-    assert adviser.due(other, time.monotonic() + 2e6)
-    assert not adviser.due(model, time.monotonic() + 2e6)
-
-
-def test_with_no_time_between_looks_there_are_none() -> None:
-    found, _ = moves_of([RunStart("a"), *driven(replace(SLIP, seconds=12.0))], moves_every=0.0)
-    assert found == []
+    assert adviser.due(other, now + 1e3 + LOOK_EVERY)
+    assert not adviser.due(model, now + 1e3 + LOOK_EVERY)

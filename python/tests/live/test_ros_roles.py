@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from slipwise.live.ros_roles import only_positions, source_topics, with_oriented_imu, without_headings
+from slipwise.live.ros_roles import first_poses, only_positions, source_topics, with_oriented_imu
 from slipwise.live.ros_transport import CueTopics, RosTransport
 from slipwise.live.samples import Gyro, Pose, Sample
 from slipwise.live.wires.ros_types import ros_types
@@ -105,9 +105,9 @@ def test_an_imu_without_an_orientation_gives_no_headings(oriented: bool) -> None
     assert said == ([] if oriented else ["/imu has no orientation: its yaw rates are used"])
 
 
-def lidar(w: float) -> bytes:
+def lidar(w: float, qx: float = 0.0) -> bytes:
     q, at = (
-        made("geometry_msgs/msg/Quaternion", 0.0, 0.0, 0.0, w),
+        made("geometry_msgs/msg/Quaternion", qx, 0.0, 0.0, w),
         made("geometry_msgs/msg/Point", 1.0, 2.0, 0.0),
     )
     message = made(POSE_STAMPED, header(), made("geometry_msgs/msg/Pose", at, q))
@@ -118,8 +118,9 @@ def lidar(w: float) -> bytes:
 def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float) -> None:
     said: list[str] = []
     wire = Wire({"/lidar": [lidar(w)] * 3})
-    positions = without_headings(wire, roles(LIDAR), said.append)
+    positions, attitude = first_poses(wire, roles(LIDAR), said.append)
     assert positions is (w == 0.0)
+    assert not attitude
     assert said == (["the quaternions of /lidar are no rotations: positions only"] if positions else [])
     transport = RosTransport(wire, roles(LIDAR), LogOptions(), name="slipwise", headed=not positions)
     found: list[Sample] = []
@@ -127,6 +128,14 @@ def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float)
     poses = [pose for pose in found if isinstance(pose, Pose)]
     assert [(pose.x, pose.y) for pose in poses] == [(1.0, 2.0)] * 3
     assert all(np.isnan(pose.yaw) is np.bool_(positions) for pose in poses)
+
+
+def test_poses_with_a_roll_or_a_pitch_are_learned_from_with_terms_of_gravity() -> None:
+    tilted = Wire({"/lidar": [lidar(1.0), lidar(0.96, 0.28), lidar(1.0)]})
+    assert first_poses(tilted, roles(LIDAR), print) == (False, True)
+    level, tilted = [imu(oriented=True)] * 3, [imu(oriented=False)] * 3
+    fix = roles(FIX, headed=True)
+    assert first_poses(Wire({"/imu": level}), fix, print) == first_poses(Wire({"/imu": tilted}), fix, print)
 
 
 def samples_of(taken: Roles, messages: dict[str, list[bytes]]) -> list[Sample]:

@@ -27,7 +27,7 @@ from sample_foxglove import (
 )
 
 from slipwise.errors import LogError
-from slipwise.logs import Log, LogOptions, open_log
+from slipwise.logs import Log, LogOptions, open_log, unpacking
 from slipwise.logs.foxglove_file import has_other_schemas
 from slipwise.logs.survey import survey_log
 
@@ -177,13 +177,14 @@ def test_damaged_bytes_never_end_otherwise_than_in_a_log_or_a_log_error(file: Pa
             assert len(open_log(file).runs) == 1
 
 
-def test_what_unpacks_to_too_much_is_refused(tmp_path: Path) -> None:
+def test_what_unpacks_to_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(unpacking, "MOST_UNPACKED", 1.0)
     made = Writer(chunk_size=1 << 22, compression=writer_module.CompressionType.ZSTD)
     poses = made.channel("/pose", "foxglove.PoseInFrame")
     made.add(poses, 0, b'{"x": "' + b" " * (1 << 21) + b'"}')
     path = made.write(tmp_path / "drive.mcap")
     with pytest.raises(LogError, match="unpacks to more than 1 MiB"):
-        open_log(path, options=LogOptions(most_unpacked=1.0))
+        open_log(path)
 
 
 def test_without_the_library_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

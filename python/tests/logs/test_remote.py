@@ -11,7 +11,7 @@ import pytest
 from logs.file_server import Server, serving
 
 from slipwise.addresses import remote_url, shown
-from slipwise.errors import LogError, SettingsError
+from slipwise.errors import LogError
 from slipwise.logs import LogOptions, open_log, remote
 from slipwise.logs.left_out import Tally
 from slipwise.logs.pose_file import read_pose_file
@@ -57,10 +57,13 @@ def test_poses_beside_a_log_may_lie_on_a_server(server: Server) -> None:
 
 
 @pytest.mark.parametrize("silent", [False, True])
-def test_more_than_is_allowed_is_not_fetched(server: Server, *, silent: bool) -> None:
+def test_more_than_is_allowed_is_not_fetched(
+    server: Server, monkeypatch: pytest.MonkeyPatch, *, silent: bool
+) -> None:
+    monkeypatch.setattr(remote, "MOST_FETCHED", 1.0)
     server.files["/a.csv"], server.silent = DRIVE + bytes(4 << 20), silent
-    with pytest.raises(LogError, match=r"more than 1 MiB .*a\.csv.*--most-fetched"):
-        open_log(f"{server.address}/a.csv", options=LogOptions(most_fetched=1.0))
+    with pytest.raises(LogError, match=r"more than 1 MiB .*a\.csv.*copy the file"):
+        open_log(f"{server.address}/a.csv")
     assert silent or not server.asked
 
 
@@ -157,11 +160,6 @@ def test_a_folder_of_this_machine_goes_before_an_address(
 
 def test_names_of_files_are_shown_as_they_are() -> None:
     assert shown(Path("a?b@c.csv")) == "a?b@c.csv"
-
-
-def test_a_limit_is_positive() -> None:
-    with pytest.raises(SettingsError, match="--most-fetched must be a positive number of MiB"):
-        LogOptions(most_fetched=0.0)
 
 
 def test_a_lent_copy_serves_all_that_read_it_and_is_gone_at_the_end(server: Server) -> None:

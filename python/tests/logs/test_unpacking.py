@@ -19,16 +19,16 @@ from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 
-from slipwise.errors import LogError, SettingsError
-from slipwise.logs import LogOptions, open_log
-from slipwise.logs.unpacking import _zstd, unpack_bz2, unpack_lz4, unpack_zstd, unpacking_at_most
+from slipwise.errors import LogError
+from slipwise.logs import open_log, unpacking
+from slipwise.logs.unpacking import _zstd, unpack_bz2, unpack_lz4, unpack_zstd
 
 PACKERS: list[tuple[Callable[[bytes], bytes], Callable[[bytes], bytes]]] = [
     (_zstd().compress, unpack_zstd),
     (lz4.frame.compress, unpack_lz4),
     (bz2.compress, unpack_bz2),
 ]
-SMALL = LogOptions(most_unpacked=0.001)  # about 1 kB
+SMALL = 0.001  # MiB
 RAW = np.random.default_rng(1).bytes(20_000) + bytes(300_000)
 
 
@@ -50,14 +50,14 @@ def test_a_piece_that_is_cut_off_is_an_error(
 
 @pytest.mark.parametrize(("pack", "unpack"), PACKERS)
 def test_a_piece_is_unpacked_to_the_size_allowed_and_no_further(
-    pack: Callable[[bytes], bytes], unpack: Callable[[bytes], bytes]
+    pack: Callable[[bytes], bytes], unpack: Callable[[bytes], bytes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     packed = pack(bytes(1 << 20))
-    with unpacking_at_most(1.0):
-        assert len(unpack(packed)) == 1 << 20
-    with unpacking_at_most(0.9), pytest.raises(LogError, match=r"unpacks to more than 0\.9 MiB") as caught:
+    monkeypatch.setattr(unpacking, "MOST_UNPACKED", 1.0)
+    assert len(unpack(packed)) == 1 << 20
+    monkeypatch.setattr(unpacking, "MOST_UNPACKED", 0.9)
+    with pytest.raises(LogError, match=r"unpacks to more than 0\.9 MiB.*unpack it first"):
         unpack(packed)
-    assert "--most-unpacked" in caught.value.advice
 
 
 def packed_mcap(folder: Path) -> Path:
@@ -92,7 +92,9 @@ def filled(bag: Bag, writer: Any, path: Path) -> Path:
 
 
 @pytest.mark.parametrize("kind", ["mcap", "messages", "lz4", "bz2"])
-def test_a_compressed_bag_is_read_up_to_the_size_allowed(tmp_path: Path, kind: str) -> None:
+def test_a_compressed_bag_is_read_up_to_the_size_allowed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
     make: dict[str, Callable[[Path], Path]] = {
         "mcap": packed_mcap,
         "messages": packed_messages,
@@ -101,31 +103,32 @@ def test_a_compressed_bag_is_read_up_to_the_size_allowed(tmp_path: Path, kind: s
     }
     path = make[kind](tmp_path)
     assert len(open_log(path).runs[0].poses) == 100
-    tiny = LogOptions(most_unpacked=5e-5) if kind == "messages" else SMALL
+    monkeypatch.setattr(unpacking, "MOST_UNPACKED", 5e-5 if kind == "messages" else SMALL)
     with pytest.raises(LogError, match="a chunk of the bag unpacks to more than") as caught:
-        open_log(path, options=tiny)
+        open_log(path)
     assert str(path) in caught.value.where
 
 
-def test_a_compressed_table_is_read_up_to_the_size_allowed(tmp_path: Path) -> None:
+def test_a_compressed_table_is_read_up_to_the_size_allowed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     rows = "".join(f"{0.1 * i:.1f},1,0,{0.1 * i:.1f},0,0\n" for i in range(200))
     packed, stored = tmp_path / "a.csv.gz", tmp_path / "a.csv"
     packed.write_bytes(gzip.compress(f"t,cmd_v,cmd_omega,x,y,yaw\n{rows}".encode()))
     stored.write_bytes(gzip.decompress(packed.read_bytes()))
-    assert len(open_log(packed).runs[0].poses) == len(open_log(stored, options=SMALL).runs[0].poses) == 200
+    assert len(open_log(packed).runs[0].poses) == 200
+    monkeypatch.setattr(unpacking, "MOST_UNPACKED", SMALL)
+    assert len(open_log(stored).runs[0].poses) == 200
     with pytest.raises(LogError, match=r"the table unpacks to more than 0\.001 MiB \(.*a\.csv\.gz\)"):
-        open_log(packed, options=SMALL)
+        open_log(packed)
 
 
-def test_a_parquet_file_that_claims_little_and_holds_much_is_refused(tmp_path: Path) -> None:
+def test_a_parquet_file_that_claims_little_and_holds_much_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(unpacking, "MOST_UNPACKED", 16.0)
     constant = pa.array(np.zeros(1_000_000))
     pq.write_table(pa.table(dict.fromkeys(("t", "x", "y", "yaw"), constant)), tmp_path / "a.parquet")
     assert (tmp_path / "a.parquet").stat().st_size < 100_000
     with pytest.raises(LogError, match=r"the table unpacks to more than 16 MiB \(.*a\.parquet\)"):
-        open_log(tmp_path / "a.parquet", options=LogOptions(most_unpacked=16.0))
-
-
-@pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf")])
-def test_the_size_allowed_is_a_positive_number(value: float) -> None:
-    with pytest.raises(SettingsError, match="--most-unpacked must be a positive number of MiB"):
-        LogOptions(most_unpacked=value)
+        open_log(tmp_path / "a.parquet")

@@ -83,9 +83,8 @@ def of_car(name: str, *sensors: Sensor, robot: Robot = THROTTLE, **changes: obje
 
 def of_turns(name: str, driven: Sensor, learns: str = "command") -> Situation:
     """Return a situation in which a gyro alone measures."""
-    live = ("live.gyro_alone=true",)
     sensors = (driven, logs.gyro())
-    return Situation(name, PLAIN, sensors, learns, live=live, truth=TURNS, changed=TIGHTER, turns=True)
+    return Situation(name, PLAIN, sensors, learns, truth=TURNS, changed=TIGHTER, turns=True)
 
 
 SITUATIONS: tuple[Situation, ...] = (
@@ -185,7 +184,6 @@ SITUATIONS: tuple[Situation, ...] = (
         PLAIN,
         (WHEELS, PoseSensor(yaw=False)),
         "wheel",
-        live=("live.positions=true",),
         truth=SLIP,
         changed=TIGHTER,
     ),
@@ -194,7 +192,6 @@ SITUATIONS: tuple[Situation, ...] = (
         PLAIN,
         (WHEELS, PoseSensor(yaw=False, std=(0.03, 0.0)), logs.gyro()),
         "wheel",
-        live=("live.positions=true",),
         truth=SLIP,
         changed=TIGHTER,
     ),
@@ -205,7 +202,6 @@ SITUATIONS: tuple[Situation, ...] = (
         PLAIN,
         (WHEELS, *SOURCES),
         "wheel",
-        live=('live.sources=["lidar","gnss"]',),
         truth=SLIP,
         changed=TIGHTER,
     ),
@@ -232,7 +228,6 @@ SITUATIONS: tuple[Situation, ...] = (
         SLOPING,
         (TOLD, PoseSensor(space=True)),
         settings=(),
-        live=("live.attitude=true",),
         truth={"lat.abs(V)*gy": 0.05},
         changed=replace(SLOPING, slip={**SLIP, "ang.w": -0.4, "lat.abs(V)*gy": 0.05}),
     ),

@@ -71,7 +71,6 @@ def lines(learned: Learned) -> None:
         verb(
             *("live", "--transport", "stdin", "--results", results, "-o", live),
             *(*learned.live, *learned.common),
-            *(text for each in learned.situation.live for text in ("--set", each)),
         )
     same(learned.model, sw.load_model(live), 1e-6)
     published = [json.loads(line) for line in results.read_text(encoding="utf-8").splitlines()]

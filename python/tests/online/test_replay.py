@@ -147,7 +147,7 @@ def check(folder: Path, name: str, input_name: str, *, evaluating: bool) -> None
     expected = evaluated(log, input_name, JUDGING_HORIZONS) if evaluating else learned.predictions
     learner, differing = replayed(path, input_name, log, expected)
     assert not differing, f"{len(differing)} predictions differ: {differing[0]}"
-    limits = learner.find_limits(Settings().vehicle.wheel_separation)
+    limits = learner.find_limits(Settings().wheel_separation)
     same_model(learned.model.content, learner.model(), limits)
 
 

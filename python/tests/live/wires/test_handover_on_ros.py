@@ -48,17 +48,10 @@ def hand_on(wire: CycloneWire, made: Made, folder: Path, **rules: Any) -> list[s
     """Hand models on, each a little slower to answer than the last; return what nodes and hand-over say."""
     said, nodes = Said(), NodeParameters(wire, ros_types())
     targets = ["diff-drive", "mppi", "amcl", "robot-localization"]
-    handover = Handover(
-        ApplyTable(
-            mode="auto",
-            set_parameters=True,
-            targets=targets,
-            ros_distro="lyrical",
-            folder=str(folder),
-            **rules,
-        ),
-        said,
-    )
+    rules |= {"mode": "auto", "set_parameters": True, "targets": targets, "folder": str(folder)}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_DISTRO", "lyrical")
+        handover = Handover(ApplyTable(**rules), said)
     texts = []
     for k in range(TIMES):
         values = dict(made.values) | ({"log_delay_v": float(np.log(0.2 + 1e-4 * k))} if made.commands else {})

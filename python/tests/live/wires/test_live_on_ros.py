@@ -98,7 +98,7 @@ def command_of(transport: str, ros_python: Path, output: Path) -> list[str]:
         "from slipwise.cli.main import main; main()"
     )
     start = [sys.executable, "-m", "slipwise"] if transport == "cyclonedds" else [str(ros_python), "-c", ours]
-    return [*start, "live", "--transport", transport, "--set", f"live.domain={DOMAIN}", "-o", str(output)]
+    return [*start, "live", "--transport", transport, "-o", str(output)]
 
 
 @pytest.mark.parametrize("transport", ["cyclonedds", "rclpy"])
