@@ -277,10 +277,13 @@ void bind_online(nb::module_& m) {
            "run"_a, "Pushes recorded streams in the order of their stamps.")
       .def("events", locked(&MotionLearner::events), "What happened since the last call.")
       .def_prop_ro("dropped_events", locked(&MotionLearner::dropped_events))
-      .def("predict", locked([](MotionLearner& learner, const Rows& future, double horizon, double embargo) {
-             return learner.predict(samples(future, "future inputs"), horizon, embargo);
+      .def("predict",
+           locked([](MotionLearner& learner, const Rows& future, double horizon, double embargo, const Rows& forces,
+                     const ActuatorLimits* limits) {
+             return learner.predict(samples(future, "future inputs"), horizon, embargo,
+                                    {.forces = known_forces(forces), .limits = limits});
            }),
-           "future"_a, "horizon"_a, "embargo"_a)
+           "future"_a, "horizon"_a, "embargo"_a, "forces"_a, "limits"_a.none())
       .def("odometry", locked(&MotionLearner::odometry),
            "Where the robot is at the newest measurement; None before the first pose of the run.")
       .def("motion_monitor", locked(&MotionLearner::motion_monitor),

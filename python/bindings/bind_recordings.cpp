@@ -58,10 +58,7 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
     }
   }
   if (forces) {
-    check_columns(*forces, 3, "forces");
-    for (const auto& row : forces->rowwise()) {
-      run.forces.push_back({row[0], row[1], row[2]});
-    }
+    run.forces = known_forces(*forces);
   }
   return run;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "slipwise/online/force_buffer.hpp"
 #include "slipwise/online/input_buffer.hpp"
 
 namespace slipwise::bindings {
@@ -26,6 +27,15 @@ inline std::vector<InputSample> samples(const Rows& rows, const char* what) {
   all.reserve(static_cast<std::size_t>(rows.rows()));
   for (const auto& row : rows.rowwise()) {
     all.push_back({row[0], {.v = row[1], .vy = row[2], .omega = row[3]}});
+  }
+  return all;
+}
+
+inline std::vector<KnownForce> known_forces(const Rows& rows) {
+  check_columns(rows, 3, "forces");
+  std::vector<KnownForce> all;
+  for (const auto& row : rows.rowwise()) {
+    all.push_back({row[0], row[1], row[2]});
   }
   return all;
 }

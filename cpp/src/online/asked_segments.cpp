@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Segments of a stream that a caller asks for: those that are complete now, and those ahead.
 #include <algorithm>
+#include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -9,6 +11,11 @@
 #include "slipwise/online/segment_stream.hpp"
 
 namespace slipwise {
+namespace {
+
+constexpr double kLargestForce = 1e3;  // [m/s^2]
+
+}  // namespace
 
 std::vector<DrivenSegment> SegmentStream::pending_segments() const {
   PoseAccuracies accuracy = accuracy_;
@@ -65,6 +72,24 @@ DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<Inp
   InputHistory driving = by_wheels ? wheels_.slice(segment.start - kWheelsBack, segment.end, SliceKind::Wheels, all)
                                    : commanded(segment, kLookBack, newest_, all);
   return {.inputs = std::move(driving), .segment = std::move(segment), .known_at = newest_};
+}
+
+ForceBuffer SegmentStream::forces_ahead(const std::vector<KnownForce>& future) const {
+  ForceBuffer forces = forces_;
+  double before = newest_;
+  for (const KnownForce& force : future) {
+    const double most = std::max(std::abs(force.x), std::abs(force.y));
+    if (!(force.t > before) || !std::isfinite(force.t) || !(most <= kLargestForce)) {
+      throw std::invalid_argument(
+          "future forces must be finite, in m/s^2, and their stamps increase from the newest measurement on");
+    }
+    before = force.t;
+    forces.push(force);
+  }
+  if (!future.empty() && tilts_.from(newest_, settings_.unknown_after)) {
+    throw std::invalid_argument("a known force acts on level ground alone, and attitudes were pushed");
+  }
+  return forces;
 }
 
 InputSpread SegmentStream::spread_ahead(double horizon, const std::vector<InputSample>& future) const {

@@ -9,7 +9,9 @@
 #include <string>
 #include <utility>
 
+#include "slipwise/actuator/measured_start.hpp"
 #include "slipwise/linear/same_stamp.hpp"
+#include "slipwise/online/behind_limits.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/motion_learner.hpp"
 #include "slipwise/online/pose_limits.hpp"
@@ -56,6 +58,30 @@ MotionPosterior of_base_link(MotionPosterior posterior) {
   return posterior;
 }
 
+/// The inputs behind the limits of a drive, whose twist may have been measured at the start.
+InputHistory limited_ahead(const DrivenSegment& ahead, const ActuatorModel& actuator, const CommandLimits& limits) {
+  const Segment& segment = ahead.segment;
+  return segment.initial
+             ? limited_inputs(ahead.inputs, limits, measured_start(actuator, segment.start, *segment.initial))
+             : limited_inputs(ahead.inputs, limits);
+}
+
+/// The beginnings of what lies ahead, each pushed by what pushes it on the whole.
+std::vector<SegmentLinearization> pushed_beginnings(const MotionPosterior& motion, const DrivenSegment& ahead,
+                                                    const ForceBuffer& forces) {
+  std::vector<SegmentLinearization> found;
+  Segment part = ahead.segment;
+  for (std::size_t i = 1; i <= kPathPoses; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(kPathPoses);
+    part.end = ahead.segment.start + share * (ahead.segment.end - ahead.segment.start);
+    const KnownForce force = forces.mean(part.start, part.end).value_or(KnownForce{});
+    part.gx = force.x;
+    part.gy = force.y;
+    found.push_back(linearize_segment(motion.model, motion.estimate.mean, ahead.inputs, part));
+  }
+  return found;
+}
+
 }  // namespace
 
 StudentT MotionLearner::student_for(double horizon, Structure structure) const {
@@ -94,40 +120,67 @@ std::vector<DrivenSegment> MotionLearner::complete_now() const {
   return complete;
 }
 
-PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, double horizon, double embargo) {
+/// Where slip is after all that was measured, of a drive with these limits.
+SlipNow MotionLearner::slip_at_newest(const Knowledge& known, const CommandLimits& limits) {
+  std::vector<DrivenSegment> complete = settings_.learn_disturbance ? complete_now() : std::vector<DrivenSegment>{};
+  SegmentList recent = recent_before(stream_.newest());
+  std::vector<DrivenSegment> limited;
+  if (!unlimited(limits)) {
+    limited.reserve(recent.size());
+    for (const DrivenSegment*& each : recent) {
+      each = &limited.emplace_back(behind(*each, limits));
+    }
+    std::ranges::transform(complete, complete.begin(), [&](const DrivenSegment& each) { return behind(each, limits); });
+  }
+  SlipNow slip = recent_slip_.after(*known.disturbance, known.motion, recent);
+  for (const DrivenSegment& segment : complete) {
+    known.disturbance->follow(*known.motion, slip, segment);
+  }
+  return slip;
+}
+
+PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, double horizon, double embargo,
+                                     const KnownAhead& known) {
   check(future, horizon);
-  std::vector<InputSample> inputs = future;
-  std::ranges::for_each(inputs, [this](InputSample& sample) { sample.t = clock_.counted(sample.t); });
+  const auto counted = [this](auto samples) {
+    std::ranges::for_each(samples, [this](auto& sample) { sample.t = clock_.counted(sample.t); });
+    return samples;
+  };
+  const std::vector<InputSample> inputs = counted(future);
   if (stream_.newest() == -kNever) {
     throw std::invalid_argument("nothing was measured in this run yet: push measurements before a prediction");
   }
   work_until(stream_.newest() - kReady);
-  const Knowledge& known = known_at(stream_.newest() - std::max(embargo, kReady));
+  Knowledge knowledge = known_at(stream_.newest() - std::max(embargo, kReady));
+  const Structure structure = knowledge.motion->structure;  // whose errors are known
   DrivenSegment ahead = stream_.segment_ahead(horizon, inputs);
   ahead.segment.sensor = {};
-  SlipNow slip = recent_slip_.after(*known.disturbance, known.motion, recent_before(stream_.newest()));
-  if (settings_.learn_disturbance) {
-    for (const DrivenSegment& segment : complete_now()) {
-      known.disturbance->follow(*known.motion, slip, segment);
-    }
+  CommandLimits limits;
+  if (known.limits != nullptr && known.limits->posterior != nullptr) {
+    knowledge.motion = known.limits->posterior;
+    limits = known.limits->search.drive.limits;
+    ahead.inputs = limited_ahead(ahead, knowledge.motion->model.actuator(knowledge.motion->estimate.mean), limits);
   }
-  const MotionPosterior motion = of_base_link(*aged(known, ahead.segment));
-  const auto beginnings =
-      linearize_beginnings(motion.model, motion.estimate.mean, ahead.inputs, ahead.segment, kPathPoses);
+  const SlipNow slip = slip_at_newest(knowledge, limits);
+  const MotionPosterior motion = of_base_link(*aged(knowledge, ahead.segment));
+  const ForceBuffer forces = stream_.forces_ahead(counted(known.forces));
+  const auto beginnings = known.forces.empty() ? linearize_beginnings(motion.model, motion.estimate.mean, ahead.inputs,
+                                                                      ahead.segment, kPathPoses)
+                                               : pushed_beginnings(motion, ahead, forces);
   PredictedPath path{.start = stream_.newest(),
                      .t = {},
                      .poses = {},
                      .covariances = {},
                      .students = {},
-                     .structure = known.motion->structure};
+                     .structure = knowledge.motion->structure};
   std::ranges::transform(beginnings, std::back_inserter(path.t),
                          [](const SegmentLinearization& part) { return part.path.times.back(); });
   path.t.back() = ahead.segment.end;
-  const auto along = known.disturbance->predict_along(motion, slip, beginnings, ahead.segment);
+  const auto along = knowledge.disturbance->predict_along(motion, slip, beginnings, ahead.segment);
   const auto of_inputs =
       input_covariances(motion.model, motion.estimate.mean, ahead, stream_.spread_ahead(horizon, inputs), path.t);
   for (std::size_t i = 0; i < along.size(); ++i) {
-    path.students.push_back(student_for(path.t[i] - path.start, known.motion->structure));
+    path.students.push_back(student_for(path.t[i] - path.start, structure));
     path.poses.push_back(along[i].pose);
     path.covariances.emplace_back(path.students.back().inflation * along[i].covariance + of_inputs[i]);
   }

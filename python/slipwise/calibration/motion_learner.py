@@ -7,7 +7,6 @@ import json
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
@@ -17,11 +16,12 @@ from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import found_limits, held_out_predictions, kept_posterior
 from slipwise.calibration.learner import posterior_of
-from slipwise.calibration.learner_answers import Event, PredictedPath, event_of, path_of
+from slipwise.calibration.learner_answers import Event, event_of
 from slipwise.calibration.measured_body import measured_body
 from slipwise.calibration.measurements import Measurements
 from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
+from slipwise.calibration.path_ahead import PathAhead
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 _LENGTH_BYTES = 8  # of what stands before the core's bytes
 
 
-class MotionLearner(Measurements, RememberedSurfaces):
+class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
     """Takes measurements as they come; each stream in the order of its stamps.
 
     Streams may be late relative to each other by up to half a second. What is wrong is rejected, counted
@@ -110,6 +110,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
         self._wheel_step = WheelStep()
         self._sideways = {name: SidewaysSeen() for name in ("command", "wheel")}
         self._remember = remember
+        self._limits = None  # not saved
         self._start: Model | None = None  # that it began with
         self._of_log: tuple[Contradiction, ...] = ()  # what only a whole log shows
         self._log_known = False
@@ -123,29 +124,6 @@ class MotionLearner(Measurements, RememberedSurfaces):
     def events(self) -> list[Event]:
         """Return what happened since the last call."""
         return [event_of(event, self._run(event.run)) for event in self._core.events()]
-
-    def predict(self, inputs: Sequence[tuple[float, ...]] | ArrayLike, *, horizon: float) -> PredictedPath:
-        """Predict the path of base_link from the newest measurement on, with commands that are on their way.
-
-        Args:
-            inputs: what the robot will be given, rows of (t [s], v [m/s], omega [rad/s]), [N, 3]; of a robot
-                that drives sideways (t, v, vy, omega), [N, 4]; of a car (t, throttle, steering).
-            horizon: how far to predict [s].
-
-        Raises:
-            SettingsError: the inputs are not such rows, the horizon is not positive or longer than an hour,
-                or nothing was measured yet.
-        """
-        rows, axes = np.asarray(inputs, dtype=np.float64), self.axes
-        if rows.ndim != 2 or rows.shape[1] != 1 + len(axes):
-            names = ", ".join(("t", *axes.names))
-            raise SettingsError(f"inputs have shape {rows.shape}", advice=f"give rows of ({names})")
-        future = np.column_stack((rows[:, 0], axes.twists(rows[:, 1:])))
-        try:
-            path = self._core.predict(future, horizon, 0.0)
-        except ValueError as problem:
-            raise SettingsError(str(problem)) from problem
-        return path_of(path)
 
     def odometry(self) -> Odometry | None:
         """Return where the robot is at the newest measurement; None before the first pose of the run.
@@ -313,6 +291,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
     def _learned(self, model: _core.LearnedModel, *, limits: bool) -> Learned:
         separation = self._settings.wheel_separation
         found = found_limits(self._core, model, separation) if limits else None
+        self._limits = found if limits else self._limits
         predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
         return Learned(
             kept_posterior(model, found),

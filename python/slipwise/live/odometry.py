@@ -6,8 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.learner_answers import PredictedPath
 from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.calibration.path_ahead import PredictedPath
 from slipwise.live.outputs import Floats, Odometry, Path
 from slipwise.live.samples import Pose
 

@@ -267,6 +267,8 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "MotionLearner.forget fraction": lambda: 0.5,
     "MotionLearner.load saved": lambda: _learner().save(),
     "MotionLearner.predict future": lambda: np.array([[6.0, 0.5, 0.0, 0.1]]),
+    "MotionLearner.predict forces": lambda: np.array([[6.0, 0.0, 0.5]]),
+    "MotionLearner.predict limits": lambda: None,
     "Mppi.__init__ models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None, False)],
     "Mppi.adopt models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None, False)],
     "Mppi.step past": lambda: np.zeros((2, 3)),

@@ -54,7 +54,7 @@ def test_a_list_of_inputs_in_which_one_is_missing_is_refused() -> None:
 def test_stamps_of_future_inputs_that_do_not_increase_are_refused(stamps: tuple[float, float]) -> None:
     future = np.column_stack((stamps, np.zeros((2, 3))))
     with pytest.raises(ValueError, match="their stamps must increase"):
-        of_type("MotionLearner").predict(future, 1.0, 0.0)
+        of_type("MotionLearner").predict(future, 1.0, 0.0, np.zeros((0, 3)), None)
 
 
 def test_every_binding_works_with_its_sound_arguments(subtests: pytest.Subtests) -> None:

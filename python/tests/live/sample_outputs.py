@@ -12,7 +12,7 @@ from sample_logs import Drive, simulated_run
 
 from slipwise import MotionLearner, Settings, _core
 from slipwise.calibration.learned_sequence import SurfaceSummary
-from slipwise.calibration.learner_answers import PredictedPath
+from slipwise.calibration.path_ahead import PredictedPath
 from slipwise.errors import SettingsError
 from slipwise.live.outputs import (
     Floats,

@@ -25,12 +25,10 @@ REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
 
 #: Cells that are wrong, by why they are; a test turns up when its cell is mended.
 WRONG: dict[str, str] = {
-    "a learner predicts with the force of now, and what pushes later cannot be given": "force:ahead",
     "a bag holds no forces, which convert says and counts": "force:mcap",
     "the lags stand behind the kinematics": """
         steering:predict steering:rollout steering:c-header steering:to-mppi steering:to-px4
         steering:to-ardupilot""",
-    "a learner asked for a path has no limits of the drive yet": "limits:ahead",
     "four robots of two drives each scatter too much for one to stand out": """
         limits:fleet both:fleet sideways:fleet sideways-vehicle:fleet steering:fleet throttle:fleet
         throttle-tighter:fleet gyro-commands:fleet slopes:fleet batch:fleet""",

@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 from matrix import drives
 from matrix.learned import Learned, verb
-from matrix.simulator import held_commands, in_space, seen_from_start
+from matrix.simulator import Floats, Robot, held_commands, in_space, seen_from_start
 
 import slipwise as sw
 from slipwise.calibration.prepared_run import prepare_run
@@ -115,11 +115,21 @@ def ahead(learned: Learned) -> None:
     before = np.column_stack((np.arange(len(told)) * 0.05, told))
     more = situation.manoeuvre
     more[:, 0] += situation.seconds
-    path = learner_of(learned).predict(situation.rows(more), horizon=drives.SECONDS)
+    learner = learner_of(learned)
+    learner.model()  # which finds the limits of the drive
+    pushes = held_force(situation.robot, situation.seconds, drives.SECONDS)
+    path = learner.predict(situation.rows(more), horizon=drives.SECONDS, forces=pushes)
     driven = situation.driven(np.vstack((before, more)), situation.seconds + drives.SECONDS)
     through = driven.pose[driven.at(np.array([path.start, path.start + drives.SECONDS]))]
     truth = seen_from_start(in_space(situation.robot, through)[:, [0, 1, 5]])[-1]
     drives.close(learned, path.poses[-1], truth, share=2.5)  # it starts at the speed that the log ends with
+
+
+def held_force(robot: Robot, since: float, seconds: float) -> Floats:
+    """Return the known force over a time ahead as rows of a stamp and its two parts."""
+    amplitude, period = robot.force
+    t = since + np.arange(0.05, seconds if amplitude else 0.0, 0.1)
+    return np.column_stack((t, np.zeros(len(t)), amplitude * np.cos(2.0 * np.pi * t / period)))
 
 
 def learner_for(learned: Learned, log: Log) -> sw.MotionLearner:

@@ -61,6 +61,12 @@ struct DatedSurfaceEvent {
   double t;         ///< [s] end of the last segment that spoke, or of the run before a drive
 };
 
+/// What is known of the time ahead beside the inputs.
+struct KnownAhead {
+  std::vector<KnownForce> forces = {};     ///< that will push the robot, each until the next; before, the last pushed
+  const ActuatorLimits* limits = nullptr;  ///< of the drive, as they were found; none: it has none
+};
+
 /// A path that is predicted from now on.
 struct PredictedPath {
   double start;                              ///< [s]
@@ -133,7 +139,8 @@ class MotionLearner {
   /// Where the robot will be if it is given the `future` inputs, over `horizon` [s] from the newest measurement on.
   /// Parameters are those known `embargo` [s] before.
   /// \throws std::invalid_argument when the horizon is not positive or longer than an hour, or an input is impossible.
-  PredictedPath predict(const std::vector<InputSample>& future, double horizon, double embargo = 0.0);
+  PredictedPath predict(const std::vector<InputSample>& future, double horizon, double embargo = 0.0,
+                        const KnownAhead& known = {});
   /// Where the robot is at the newest measurement: the measured poses, and the learned motion since the last of them.
   /// Nothing before the first pose of the run. It does not change the learned model, and it is not saved: a learner
   /// that was loaded begins again with the next pose, for the robot may have been moved meanwhile.
@@ -227,6 +234,7 @@ class MotionLearner {
   const Knowledge& known_at(double t) const;
   std::shared_ptr<const MotionPosterior> aged(const Knowledge& known, const Segment& segment) const;
   SegmentList recent_before(double t) const;
+  SlipNow slip_at_newest(const Knowledge& known, const CommandLimits& limits);
   std::vector<DrivenSegment> complete_now() const;
   Knowledge now_known(double until) const;
   StudentT student_for(double horizon, Structure structure) const;

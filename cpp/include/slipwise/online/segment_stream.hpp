@@ -138,6 +138,9 @@ class SegmentStream {
   /// The segment from now on over `horizon` [s], driven by `future` inputs. What is held for longer than any input that
   /// was measured is repeated, so that there are poses on the way.
   DrivenSegment segment_ahead(double horizon, const std::vector<InputSample>& future) const;
+  /// Known forces over what lies ahead: those of late, and then the `future` ones.
+  /// \throws std::invalid_argument when one is impossible, or attitudes say that the ground is not level.
+  ForceBuffer forces_ahead(const std::vector<KnownForce>& future) const;
   /// How the inputs of `segment_ahead` may be else, where a car's curves make them of the commands.
   InputSpread spread_ahead(double horizon, const std::vector<InputSample>& future) const;
 
