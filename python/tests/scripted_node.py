@@ -54,11 +54,14 @@ class Scripted(Feed):
 
 
 def run_node(
-    script: Sequence[Sample], table: LiveTable | None = None, input_name: str = "wheel"
+    script: Sequence[Sample],
+    table: LiveTable | None = None,
+    input_name: str = "wheel",
+    basis: str = "auto",
 ) -> tuple[Built, Scripted]:
     """Run a node over a script; return what it was built of, and the transport."""
     transport = Scripted(script)
-    settings = Settings().model_copy(update={"live": table or LiveTable()})
+    settings = Settings(basis=basis).model_copy(update={"live": table or LiveTable()})
     built = build_node(transport, input_name, settings, run="test")
     built.node.run()
     return built, transport

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from slipwise.calibration import Settings
+from slipwise.calibration import make_settings
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.number_text import number_text
 from slipwise_sim import LandTamer, TractionLaw, traction_force
@@ -77,7 +77,7 @@ def traction_law() -> ThesisFigure:
 
 def related_models(fixture: Fixture) -> ThesisFigure:
     """Compare the models of section 2.3 where the terrain follows (2.8) and (2.9)."""
-    settings = Settings.model_validate({"vehicle": {"wheel_separation": LandTamer().wheel_separation}})
+    settings = make_settings({"log": {"wheel_separation": LandTamer().wheel_separation}})
     options = EvaluationOptions(HORIZONS, tuple(METHODS))
     result = evaluate(fixture.long_drive(TERRAIN).log, input="wheel", settings=settings, options=options)
     last = result.horizons[-1]

@@ -61,14 +61,14 @@ def test_gravity_is_found_on_hills_and_predictions_are_better_for_it() -> None:
 
 @pytest.mark.slow
 def test_on_flat_ground_auto_calls_terms_of_gravity_not_identifiable() -> None:
-    """Of fifty drives of a minute, at most two may claim to know one."""
+    """Of twenty drives of a minute, at most one may claim to know one: 15 % would be seen by four in five."""
     claimed = 0
-    for seed in range(50):
+    for seed in range(20):
         learned = calibrate(hilly_log(seed, Hills(height=0.0, seconds=60.0))).model.content.parameters
         terms = [p for p in learned if p.name.rpartition("*")[2] in ("gx", "gy") or p.name in GRAVITY_TERMS]
         assert len(terms) in (3, 7)  # the structure without lags has fewer bases
         claimed += any(p.identifiable for p in terms)
-    assert claimed <= 2
+    assert claimed <= 1
 
 
 def test_no_prediction_depends_on_an_attitude_that_is_measured_after_its_start() -> None:

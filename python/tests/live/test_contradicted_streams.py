@@ -86,7 +86,7 @@ def sound(seconds: float = DRIVE.seconds) -> Log:
 
 
 def lived(log: Log, folder: Path, input_name: str = "wheel", **table: object) -> tuple[Built, Scripted]:
-    """Run a node that hands on whatever it may."""
+    """Run a node that hands on whatever it may; contradictions do not depend on the basis."""
     (run,) = prepare_run(log, input_name)
     apply = ApplyTable(
         mode="auto",
@@ -98,7 +98,7 @@ def lived(log: Log, folder: Path, input_name: str = "wheel", **table: object) ->
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(applied, "RATE", 1.0)  # at once
         patch.setenv("ROS_DISTRO", "jazzy")
-        return run_node(list(samples_of(run)), LiveTable(apply=apply, **table), input_name)  # type: ignore[arg-type]
+        return run_node(list(samples_of(run)), LiveTable(apply=apply, **table), input_name, "edd-2")  # type: ignore[arg-type]
 
 
 def faults_of(built: Built, transport: Scripted, folder: Path) -> list[str]:

@@ -77,7 +77,7 @@ def test_a_live_verdict_on_a_hostile_log_is_that_of_calibrate(real_log_dir: Path
 def test_the_live_verdict_on_every_hostile_log_is_that_of_calibrate(real_log_dir: Path) -> None:
     hostile = real_log_dir.parent / "hostile"
     paths = [*sorted((hostile / "num").glob("*.csv")), *sorted(hostile.glob("*.csv"))]
-    assert differences(paths) == {}
+    assert differences(paths, basis="edd-2") == {}  # real logs below are learned with `auto`
 
 
 @pytest.mark.slow

@@ -30,7 +30,7 @@ ALPHA = (
     *(-TAN * (1 - MEAN), TAN * TRACK / 2 * HALF),
     *(-HALF / (TRACK / 2), -MEAN),
 )
-SETTINGS = make_settings({"vehicle": {"wheel_separation": TRACK}})
+SETTINGS = make_settings({"log": {"wheel_separation": TRACK}})
 
 
 @cache
