@@ -9,7 +9,6 @@ import numpy as np
 from sample_logs import Drive, simulated_log
 
 from slipwise import _core
-from slipwise.calibration import Settings
 from slipwise.calibration.calibrate_sequence import calibrate_sequence
 from slipwise.calibration.learned_sequence import SequenceOptions
 from slipwise.logs import Log
@@ -30,13 +29,7 @@ def floor_log(slip: tuple[float, float], seed: int, *, terrain: str = "", second
     return Log(runs=(replace(run, extra=extra),))
 
 
-def model_of_floors(
-    *slips: tuple[float, float],
-    seed: int = 0,
-    labels: tuple[str, ...] = (),
-    settings: Settings | None = None,
-) -> Model:
+def model_of_floors(*slips: tuple[float, float], seed: int = 0, labels: tuple[str, ...] = ()) -> Model:
     """Return a model that remembers the floors it was driven on, one log each, from wheel speeds."""
     logs = [floor_log(slip, seed + k) for k, slip in enumerate(slips)]
-    options = SequenceOptions(labels=labels)
-    return calibrate_sequence(logs, input="wheel", settings=settings, options=options)[0].model
+    return calibrate_sequence(logs, input="wheel", options=SequenceOptions(labels=labels))[0].model
