@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.fleet.empirical_bayes import FleetPrior, fleet_prior
+from slipwise.fleet.odd import Estimates, odd_ones
 from slipwise.fleet.random_walk import Walk, random_walk
 from slipwise.fleet.scatter import shared_scatter
 
@@ -64,7 +65,7 @@ def findings_of(table: Mapping[str, NDArray[Any]]) -> tuple[ParameterFindings, .
     if not table:
         return ()
     groups = rows_by_parameter(table)
-    found = [_parameter(table, name, groups[name]) for name in sorted(groups)]
+    found = _with_odd([_parameter(table, name, groups[name]) for name in sorted(groups)])
     tests = [finding for each in found for finding in each.findings]
     weights = [WEIGHTS[finding.kind] for finding in tests]
     alarms = iter(discoveries([finding.chance for finding in tests], weights))
@@ -124,9 +125,8 @@ def _parameter(
         else None
     )
     drifts = _drifts(name, lines)
-    odd = [] if prior is None else _odd(name, vehicles, (estimate, std), prior)
     unit = str(table["unit"][min(int(mine[0]) for mine in rows.values())])
-    return ParameterFindings(name, unit, tuple(vehicles), estimate, std, prior, (*odd, *drifts))
+    return ParameterFindings(name, unit, tuple(vehicles), estimate, std, prior, tuple(drifts))
 
 
 def pooled(values: Floats, stds: Floats) -> tuple[float, float]:
@@ -137,23 +137,22 @@ def pooled(values: Floats, stds: Floats) -> tuple[float, float]:
     return float(prior.mean[0]), float(math.sqrt(prior.mean_covariance[0, 0]))
 
 
-def _odd(
-    name: str, vehicles: Sequence[str], measured: tuple[Floats, Floats], prior: FleetPrior
-) -> list[Finding]:
-    """Compare each vehicle with what the others say of a new one; two vehicles cannot tell which is odd."""
-    found, (estimate, std) = [], measured
-    for place, vehicle in enumerate(vehicles):
-        others = np.arange(len(vehicles)) != place
-        if others.sum() < 2:
-            return []
-        rest = fleet_prior(
-            estimate[others, None], std[others, None, None] ** 2, dof=STUDENT_DOF, start=prior.between
-        )
-        off = float(estimate[place] - rest.mean[0])
-        spread = math.sqrt(float(rest.new_robot[0, 0]) + float(std[place]) ** 2)
-        chance = _two_sided(off / spread, float(others.sum() - 1))
-        found.append(Finding(vehicle, name, "odd", off, spread, chance))
-    return found
+def _with_odd(found: Sequence[ParameterFindings]) -> list[ParameterFindings]:
+    """Compare each vehicle with the others, in all parameters together; two cannot tell which is odd."""
+    vehicles = sorted({vehicle for each in found for vehicle in each.vehicles})
+    place = {vehicle: k for k, vehicle in enumerate(vehicles)}
+    measured = []
+    for each in found:
+        estimate, std, weight = (np.full(len(vehicles), np.nan) for _ in range(3))
+        at = [place[vehicle] for vehicle in each.vehicles]
+        estimate[at], std[at] = each.estimate, each.std
+        weight[at] = 1.0 if each.prior is None else each.prior.weight
+        measured.append(Estimates(estimate, std, weight))
+    compared = []
+    for each, odd in zip(found, odd_ones(measured), strict=True):
+        mine = [Finding(vehicles[k], each.parameter, "odd", o.size, o.std, o.chance) for k, o in odd.items()]
+        compared.append(replace(each, findings=(*mine, *each.findings)))
+    return compared
 
 
 @dataclass(frozen=True)

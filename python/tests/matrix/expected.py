@@ -29,9 +29,6 @@ WRONG: dict[str, str] = {
     "the lags stand behind the kinematics": """
         steering:predict steering:rollout steering:c-header steering:to-mppi steering:to-px4
         steering:to-ardupilot""",
-    "four robots of two drives each scatter too much for one to stand out": """
-        limits:fleet both:fleet sideways:fleet sideways-vehicle:fleet steering:fleet throttle:fleet
-        throttle-tighter:fleet gyro-commands:fleet slopes:fleet batch:fleet""",
 }
 
 
