@@ -17,6 +17,7 @@ from slipwise.logs.bag_streams import (
     BagContext,
     command_stream,
     fix_stream,
+    force_stream,
     gyro_stream,
     pose_stream,
     wheel_stream,
@@ -29,6 +30,7 @@ from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Ints, Log, Run, Source, empty_poses
 from slipwise.logs.messages import (
     COMMAND_VALUES,
+    FORCE_VALUES,
     GYRO_VALUES,
     IMU_VALUES,
     JOINT_STATE,
@@ -45,7 +47,7 @@ from slipwise.logs.messages import (
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import Topic
 from slipwise.logs.run_name import run_name
-from slipwise.logs.streams import RawStream, to_inputs, to_poses
+from slipwise.logs.streams import RawStream, to_forces, to_inputs, to_poses
 from slipwise.logs.topics import Roles, choose_topics, transforms_matter
 from slipwise.logs.transforms import (
     TransformCollector,
@@ -59,6 +61,7 @@ from slipwise.logs.wheel_readings import JointReadings
 
 RUN_TOPIC = "/slipwise/run"  # std_msgs/String: a new run of this name starts here
 RUN_TYPE = "std_msgs/msg/String"
+FORCE_TOPIC = "/slipwise/force"  # a known force over the mass along the robot's axes, until the next
 CLOCK_TOPIC = "/clock"
 CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 
@@ -149,6 +152,8 @@ def _collect(bag: BagFile, roles: Roles, transforms: TransformCollector, options
     collectors: dict[str, SampleCollector] = {}
     starts: list[tuple[int, str]] = []
     found = _extractors(roles, options)
+    pushes = (topic for topic in bag.topics if topic.name == FORCE_TOPIC and topic.type in FORCE_VALUES)
+    found += [("force", topic, FORCE_VALUES[topic.type]) for topic in pushes]
     for role, topic, values in found:
         collector = SampleCollector(topic.name, values, has_header=topic.type != TWIST)
         collectors[role] = collector
@@ -251,6 +256,8 @@ def _runs(
     if roles.gyro is not None and (poses is None or poses.course):
         runs = with_gyro(runs, gyro_stream(context, samples["gyro"]), collected.starts)
     runs = _with_others(runs, collected, others, roles, context.tally) if others else runs
+    if "force" in samples and len(samples["force"].values):
+        runs = _with_forces(runs, force_stream(context, samples["force"]), collected, context.tally)
     return runs, clocks.compared
 
 
@@ -288,6 +295,14 @@ def _with_others(
             beside[name] = to_poses(stream.in_time(stream.in_run(number, collected.starts)), tally)
         found.append(replace(run, others=beside, source=first))
     return tuple(found)
+
+
+def _with_forces(
+    runs: tuple[Run, ...], stream: RawStream, collected: Collected, tally: Tally
+) -> tuple[Run, ...]:
+    """Give each run the known forces that came in it."""
+    own = (stream.select(stream.in_run(number, collected.starts)) for number in range(len(runs)))
+    return tuple(replace(run, forces=to_forces(each, tally)) for run, each in zip(runs, own, strict=True))
 
 
 def _split(

@@ -277,6 +277,12 @@ def gyro_stream(context: BagContext, samples: Samples) -> RawStream:
     return context.stream("gyro", samples, {"gyro_z": rate}, known)
 
 
+def force_stream(context: BagContext, samples: Samples) -> RawStream:
+    """Make the stream of known forces over the robot's mass."""
+    x, y = samples.values.T
+    return context.stream("forces", samples, {"force_x": x, "force_y": y})
+
+
 def deviation_of(variances: Floats) -> Floats:
     """Return the standard deviation [N] of variances [N, K], NaN unless all are positive and can be."""
     known = (variances > 0.0) & (variances < ABSURD)  # false for NaN

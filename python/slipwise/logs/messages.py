@@ -24,6 +24,7 @@ POSE_WITH_COVARIANCE = "geometry_msgs/msg/PoseWithCovarianceStamped"
 IMU = "sensor_msgs/msg/Imu"
 JOINT_STATE = "sensor_msgs/msg/JointState"
 NAV_SAT_FIX = "sensor_msgs/msg/NavSatFix"
+ACCEL_STAMPED = "geometry_msgs/msg/AccelStamped"
 TF = "tf2_msgs/msg/TFMessage"
 
 COMMAND_TYPES = (TWIST, TWIST_STAMPED, ACKERMANN)
@@ -110,6 +111,9 @@ POSE_VALUES: dict[str, Callable[[Any], Values]] = {
 }
 WHEEL_VALUES: dict[str, Callable[[Any], Values]] = {
     ODOMETRY: twist_and_pose,
+}
+FORCE_VALUES: dict[str, Callable[[Any], Values]] = {  # over the mass
+    ACCEL_STAMPED: lambda message: (message.accel.linear.x, message.accel.linear.y),
 }
 IMU_VALUES: dict[str, Callable[[Any], Values]] = {IMU: _imu_values}
 GYRO_VALUES: dict[str, Callable[[Any], Values]] = {IMU: _yaw_rate}

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from slipwise.errors import LogError
 from slipwise.files import write_whole
-from slipwise.logs.bag import RUN_TOPIC, RUN_TYPE
+from slipwise.logs.bag import FORCE_TOPIC, RUN_TOPIC, RUN_TYPE
 from slipwise.logs.log import Floats, LeftOut, Log, Run, has_course
-from slipwise.logs.messages import ODOMETRY, POSE_WITH_COVARIANCE, TWIST_STAMPED
+from slipwise.logs.messages import ACCEL_STAMPED, ODOMETRY, POSE_WITH_COVARIANCE, TWIST_STAMPED
 from slipwise.logs.rotation import quaternions_of
 
 if TYPE_CHECKING:
@@ -87,7 +87,6 @@ def _not_written(log: Log) -> tuple[LeftOut, ...]:
     """Count what the topics do not hold."""
     counts: Counter[str] = Counter()
     for run in log.runs:
-        counts["known forces"] += 0 if run.forces is None else len(run.forces)
         counts["fixes of a satellite receiver"] += 0 if run.poses.fix is None else len(run.poses)
         for name, other in run.others.items():
             counts[f"poses of the source {name}"] += len(other)
@@ -116,6 +115,7 @@ def _write(entries: list[Entry], temporary: Path, store: Typestore) -> None:
             COMMAND_TOPIC: TWIST_STAMPED,
             WHEEL_TOPIC: ODOMETRY,
             POSE_TOPIC: POSE_WITH_COVARIANCE,
+            FORCE_TOPIC: ACCEL_STAMPED,
         }
         used = {topic for _, topic, _ in entries}
         connections = {
@@ -130,9 +130,8 @@ def _write(entries: list[Entry], temporary: Path, store: Typestore) -> None:
 
 def _span(run: Run) -> tuple[int, int]:
     """Return the first and last stamp of a run in ns."""
-    times = [
-        series.t for series in (run.commands, run.wheels, run.poses) if series is not None and len(series)
-    ]
+    streams = (run.commands, run.wheels, run.poses, run.forces)
+    times = [series.t for series in streams if series is not None and len(series)]
     if not times:
         raise LogError("a run without any sample cannot be written", where=run.name)
     return _ns(min(t[0] for t in times)), _ns(max(t[-1] for t in times))
@@ -164,6 +163,10 @@ def _run_entries(run: Run, shift: int, store: Typestore) -> Iterator[Entry]:
         rows = zip(_stamps(w.t, shift), w.v.tolist(), w.vy.tolist(), w.omega.tolist(), strict=True)
         for stamp, v, vy, omega in rows:
             yield stamp, WHEEL_TOPIC, make.odometry(stamp, make.twist(v, vy, omega))
+    if run.forces is not None:
+        f = run.forces
+        for stamp, x, y in zip(_stamps(f.t, shift), f.x.tolist(), f.y.tolist(), strict=True):
+            yield stamp, FORCE_TOPIC, make.force(stamp, x, y)
     p = run.poses
     zero = np.zeros(len(p))
     z, roll, pitch = (zero if column is None else np.nan_to_num(column) for column in (p.z, p.roll, p.pitch))
@@ -217,6 +220,13 @@ class _Messages:
             self.header(stamp, "odom"), "base_link", self._nowhere, with_covariance
         )
         return self._store.serialize_cdr(message, ODOMETRY)
+
+    def force(self, stamp: int, x: float, y: float) -> memoryview:
+        over_mass = self._types["geometry_msgs/msg/Accel"](
+            self._vector(x, y, 0.0), self._vector(0.0, 0.0, 0.0)
+        )
+        message = self._types[ACCEL_STAMPED](self.header(stamp, "base_link"), over_mass)
+        return self._store.serialize_cdr(message, ACCEL_STAMPED)
 
     def pose(self, stamp: int, frame: str, row: list[float]) -> memoryview:
         x, y, z, qx, qy, qz, qw, variance_xy, variance_yaw = row

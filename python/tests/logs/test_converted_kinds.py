@@ -65,7 +65,7 @@ def test_every_kind_of_log_converts_to_every_format(tmp_path: Path) -> None:
 
 
 def test_a_bag_says_what_it_does_not_hold(tmp_path: Path) -> None:
-    path, options = kinds()["known force"].read(tmp_path)
+    path, options = kinds()["two sources"].read(tmp_path)
     left_out = save_log(open_log(path, options=options), tmp_path / "b.mcap")
-    assert [(each.count, each.kind) for each in left_out] == [(300, "not-written")]
-    assert "known forces" in left_out[0].reason
+    assert [(each.count, each.kind) for each in left_out] == [(150, "not-written")]
+    assert "poses of the source mocap" in left_out[0].reason

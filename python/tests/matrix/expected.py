@@ -25,7 +25,6 @@ REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
 
 #: Cells that are wrong, by why they are; a test turns up when its cell is mended.
 WRONG: dict[str, str] = {
-    "a bag holds no forces, which convert says and counts": "force:mcap",
     "the lags stand behind the kinematics": """
         steering:predict steering:rollout steering:c-header steering:to-mppi steering:to-px4
         steering:to-ardupilot""",
