@@ -16,6 +16,8 @@ export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export PYTHONNOUSERSITE := 1
 export PIP_USER := 0
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
+# Python compiles modules as they are imported: few of those that are installed.
+export PIP_NO_COMPILE := 1
 export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 unexport PYTHONPATH PYTHONHOME CONDA_PREFIX PYTHONDONTWRITEBYTECODE  # a test module is compiled once
 
@@ -123,14 +125,17 @@ bench: build $(STAMPS)/bench ## measure speed, and the score on logs in SLIPWISE
 thesis: $(STAMPS)/thesis ## make the thesis's figures and tables: build/thesis/index.html
 	@$(VENV)/bin/slipwise reproduce thesis -o build/thesis $(ARGS)
 
-# It is compiled from an empty environment too, so that what pyproject.toml names must do. Versions of pip differ in which
-# of the two variables holds for the tools of a build.
-wheel: $(STAMPS)/env ## build a plain wheel into build/dist and try it
+# What pyproject.toml names must be enough to build from an empty environment: there it configures and compiles one source.
+# The wheel holds what `make build` has compiled. Versions of pip differ in which of the two variables holds for the tools of
+# a build.
+wheel: $(STAMPS)/slipwise ## build a plain wheel into build/dist and try it
 	@echo "building a plain wheel, for this system alone; where docker or podman is, cibuildwheel makes manylinux wheels"
 	@rm -rf build/wheel build/dist
 	@$(PYTHON_IN) -m venv build/wheel/empty
 	@PIP_CONSTRAINT=constraints.txt PIP_BUILD_CONSTRAINT=constraints.txt build/wheel/empty/bin/python -m pip wheel --quiet \
-	  --no-deps --config-settings=build-dir=build/wheel/cmake --wheel-dir build/dist .
+	  --no-deps --config-settings=build-dir=build/wheel/cmake --config-settings=install.components=nothing \
+	  --config-settings=build.targets=CMakeFiles/_core.dir/python/bindings/bind_module.cpp.o --wheel-dir build/wheel/configured .
+	@$(PIP) wheel --quiet --no-deps --no-build-isolation --wheel-dir build/dist .
 	@build/wheel/empty/bin/python -m pip wheel --quiet --no-deps --wheel-dir build/dist packages/slipwise-sim
 	@$(PYTHON_IN) tools/try_wheel.py build/dist
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bindings of cpp/include/slipwise/filter, hypotheses and identify.
+// Bindings of cpp/include/slipwise/filter and disturbance, and of the actuator that is learned from wheel speeds.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -8,12 +8,15 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
+#include "slipwise/disturbance/ahead_prediction.hpp"
 #include "slipwise/filter/causal_filter.hpp"
 #include "slipwise/filter/iekf.hpp"
 #include "slipwise/filter/observability.hpp"
 #include "slipwise/filter/prior.hpp"
+#include "slipwise/filter/rts_smoother.hpp"
 #include "slipwise/filter/weighting.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/identify/actuator_filter.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -207,6 +210,107 @@ void bind_estimate(nb::module_& m) {
         const ReferenceSpeeds speeds = average.reference_speeds();
         return std::pair(speeds.v, speeds.omega);
       });
+}
+
+void bind_smoother(nb::module_& m) {
+  nb::enum_<Drift>(m, "Drift").value("RandomWalk", Drift::RandomWalk).value("MeanReverting", Drift::MeanReverting);
+  nb::class_<DriftSettings>(m, "DriftSettings", "How parameters may change with the distance driven.")
+      .def(nb::init<>())
+      .def_rw("drift", &DriftSettings::drift)
+      .def_rw("length", &DriftSettings::length);
+  m.def(
+      "rts_smooth",
+      [](const MotionModel& model, const Estimate& prior, const std::vector<const InputHistory*>& inputs,
+         const std::vector<Segment>& segments, const std::vector<Eigen::Matrix3d>& noise, const DriftSettings& drift,
+         const IekfSettings& iekf) {
+        check_inputs(inputs, segments.size(), noise.size());
+        std::vector<BatchDatum> data;
+        for (std::size_t i = 0; i < segments.size(); ++i) {
+          data.push_back({*inputs[i], segments[i], noise[i]});
+        }
+        return rts_smooth(model, prior, data, drift, iekf);
+      },
+      "model"_a, "prior"_a, "inputs"_a, "segments"_a, "noise"_a, "drift"_a, "iekf"_a,
+      "The parameters during each segment, given all segments, as a list of Estimate.");
+}
+
+void bind_actuator_filter(nb::module_& m) {
+  nb::class_<ActuatorUpdate>(m, "ActuatorUpdate", "How a window of wheel speeds was predicted.")
+      .def_ro("nis", &ActuatorUpdate::nis);
+  nb::class_<ActuatorFilter>(m, "ActuatorFilter", "The actuator, learned from commands and wheel speeds.")
+      .def(nb::init<const CausalFilterSettings&>(), "settings"_a)
+      .def("learn", &ActuatorFilter::learn, "inputs"_a, "wheels"_a, "start"_a, "end"_a,
+           "Learns the wheel speeds from start to end [s], in input stamps.")
+      .def("estimate", &ActuatorFilter::estimate)
+      .def_prop_ro("model", &ActuatorFilter::model)
+      .def_prop_ro("prior_std", &ActuatorFilter::prior_std);
+}
+
+void bind_slip_disturbance(nb::module_& m) {
+  nb::class_<DisturbanceSettings>(m, "DisturbanceSettings")
+      .def(nb::init<>())
+      .def_rw("fractions", &DisturbanceSettings::fractions)
+      .def_rw("time_constants", &DisturbanceSettings::time_constants)
+      .def_rw("white", &DisturbanceSettings::white)
+      .def_rw("weighting", &DisturbanceSettings::weighting);
+  nb::class_<MotionPosterior>(m, "MotionPosterior", "The posterior of a motion model at one time.")
+      .def(
+          "__init__",
+          [](MotionPosterior* self, const MotionModel& model, const Estimate& estimate,
+             const Eigen::VectorXd& prior_std, const MotionNoise& shape, const Eigen::Vector3d& noise_scale) {
+            check_estimate(model, estimate);
+            check_size(prior_std, model.size(), "the prior of a model");
+            new (self) MotionPosterior{model, estimate, prior_std, shape, noise_scale};
+          },
+          "model"_a, "estimate"_a, "prior_std"_a, "noise"_a, "noise_scale"_a)
+      .def_ro("model", &MotionPosterior::model)
+      .def_ro("estimate", &MotionPosterior::estimate)
+      .def_ro("prior_std", &MotionPosterior::prior_std)
+      .def_ro("noise", &MotionPosterior::noise)
+      .def_ro("noise_scale", &MotionPosterior::noise_scale)
+      .def_ro("variance_ratio", &MotionPosterior::variance_ratio)
+      .def_ro("basis_weights", &MotionPosterior::basis_weights)
+      .def_prop_ro("structure", [](const MotionPosterior& posterior) { return static_cast<int>(posterior.structure); });
+  nb::class_<ExpectedPose>(m, "ExpectedPose", "Where a segment is expected to end.")
+      .def_ro("pose", &ExpectedPose::pose)
+      .def_ro("covariance", &ExpectedPose::covariance);
+  nb::class_<SlipNow>(m, "SlipNow", "Where slip is at some moment, under each guess of how it disturbed.");
+  nb::class_<DisturbanceFilter>(m, "DisturbanceFilter", "The slip disturbance about what was learned.")
+      .def(nb::init<const DisturbanceSettings&>(), "settings"_a)
+      .def(nb::init<const DisturbanceModel&>(), "law"_a)
+      .def(nb::init<const DisturbanceFilter&>(), "other"_a)
+      .def(
+          "learn",
+          [](DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs, const SlipNow& now,
+             const Segment& segment) { slip.learn(posterior, now, {.inputs = inputs, .segment = segment}); },
+          "posterior"_a, "inputs"_a, "now"_a, "segment"_a,
+          "Weights the candidates by a segment, predicted from where slip was.")
+      .def(
+          "now",
+          [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
+             const std::vector<Segment>& recent) {
+            std::vector<DrivenSegment> driven;
+            for (const Segment& segment : recent) {
+              driven.push_back({.inputs = inputs, .segment = segment});
+            }
+            return slip.now(posterior, driven);
+          },
+          "posterior"_a, "inputs"_a, "recent"_a, "What recent segments say of the slip after them.")
+      .def(
+          "predict",
+          [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
+             const SlipNow& now,
+             const Segment& segment) { return slip.predict(posterior, now, {.inputs = inputs, .segment = segment}); },
+          "posterior"_a, "inputs"_a, "now"_a, "segment"_a, "Predicts a segment from where slip is.")
+      .def_prop_ro("law", &DisturbanceFilter::law);
+  m.def(
+      "predict_ahead",
+      [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
+         const SlipNow& now, const Segment& segment, const MixedAhead& ahead) {
+        return predict_ahead(slip, posterior, now, {.inputs = inputs, .segment = segment}, ahead);
+      },
+      "slip"_a, "posterior"_a, "inputs"_a, "now"_a, "segment"_a, "ahead"_a,
+      "Where a segment over several surfaces is expected to end.");
 }
 
 }  // namespace slipwise::bindings

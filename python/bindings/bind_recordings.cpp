@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bindings of recorded runs: handed to a learner whole, cut into segments, and as the gates see them.
+// Bindings of what goes into a learner and judges it: sources of poses, recorded runs, evidence of contradictions.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
@@ -9,15 +9,21 @@
 
 #include <array>
 #include <cmath>
+#include <deque>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bindings.hpp"
 #include "pose_sources.hpp"
 #include "sample_rows.hpp"
 #include "slipwise/linear/same_stamp.hpp"
+#include "slipwise/online/known_sources.hpp"
+#include "slipwise/online/motion_evidence.hpp"
+#include "slipwise/online/probed_motion.hpp"
 #include "slipwise/online/recording.hpp"
 
 namespace nb = nanobind;
@@ -94,7 +100,114 @@ void bind_attitudes(nb::module_& m) {
       .def_prop_ro("mounting", &AttitudeGate::mounting);
 }
 
+Rows window_rows(const std::deque<MotionWindow>& windows) {
+  Rows rows(std::ssize(windows), 17);
+  Eigen::Index i = 0;
+  for (const MotionWindow& w : windows) {
+    rows.row(i++) << static_cast<double>(w.run), w.start, w.since, w.duration, w.distance, w.course, w.turn,
+        w.turn_degrees, w.start_yaw, w.commands.forward, w.commands.sideways, w.commands.rotation, w.commands.known,
+        w.wheels.forward, w.wheels.sideways, w.wheels.rotation, w.wheels.known;
+  }
+  return rows;
+}
+
+Rows motion_rows(const std::vector<ProbedMotion>& motions) {
+  Rows rows(std::ssize(motions), 6);
+  Eigen::Index i = 0;
+  for (const ProbedMotion& motion : motions) {
+    rows.row(i++) << motion.measured.vector().transpose(), motion.rolled.vector().transpose();
+  }
+  return rows;
+}
+
+Rows turn_rows(const std::deque<GyroTurns>& turns) {
+  Rows rows(std::ssize(turns), 4);
+  Eigen::Index i = 0;
+  for (const GyroTurns& each : turns) {
+    rows.row(i++) << static_cast<double>(each.run), static_cast<double>(each.count), each.product, each.square;
+  }
+  return rows;
+}
+
+/// What both kinds of evidence tell in rows.
+template <class Evidence>
+void define_rows(nb::class_<Evidence>& evidence) {
+  evidence
+      .def_prop_ro(
+          "windows", [](const Evidence& e) { return window_rows(std::invoke(&Evidence::windows, e)); },
+          "Rows of (run, start, since, duration, distance, course, turn, turn_degrees, start_yaw), then (forward, "
+          "sideways, rotation, known) of the commands and the same of the wheels, of poses that the gate accepted.")
+      .def_prop_ro(
+          "measured_windows",
+          [](const Evidence& e) { return window_rows(std::invoke(&Evidence::measured_windows, e)); },
+          "The same of poses as they were measured.")
+      .def(
+          "probed_motions",
+          [](const Evidence& e, double offset) {
+            return motion_rows(probed_motions(std::invoke(&Evidence::probes, e), offset));
+          },
+          "offset"_a,
+          "Pairs of poses a second apart: rows of (x, y, turn) of the second seen from the first, then the same by the "
+          "wheels' path where their clock is `offset` [s] behind.")
+      .def_prop_ro(
+          "gyro_turns", [](const Evidence& e) { return turn_rows(std::invoke(&Evidence::gyro_turns, e)); },
+          "Rows of (run, seconds, sum of products of turns by inputs and gyro, sum of squares by inputs).");
+}
+
 }  // namespace
+
+PoseFix pose_fix(std::size_t number) {
+  if (number >= kPoseFixes) {
+    throw std::invalid_argument("a fix is a number below " + std::to_string(kPoseFixes) + ", got " +
+                                std::to_string(number));
+  }
+  return static_cast<PoseFix>(number);
+}
+
+std::vector<LearnedSource> learned_sources(const KnownSources& sources, const Eigen::Vector3d& scale) {
+  std::vector<LearnedSource> found;
+  for (std::size_t i = 0; i < sources.calibrations().size(); ++i) {
+    LearnedSource source{.calibration = sources.calibrations()[i].estimate(),
+                         .segments = sources.learned()[i],
+                         .noise = Eigen::Matrix<double, Eigen::Dynamic, 3>(kPoseFixes, 3),
+                         .seen = std::vector<bool>(kPoseFixes)};
+    for (std::size_t fix = 0; fix < kPoseFixes; ++fix) {
+      const std::size_t each = noise_class(i, static_cast<PoseFix>(fix));
+      source.seen[fix] = sources.noise().met(each);
+      source.noise.row(static_cast<Eigen::Index>(fix)) =
+          sources.noise().size({each, each}, scale).cwiseQuotient(scale).cwiseSqrt();
+    }
+    found.push_back(std::move(source));
+  }
+  return found;
+}
+
+void bind_sources(nb::module_& m) {
+  nb::class_<SourceSettings>(m, "SourceSettings", "Settings of a pose source before it measures.")
+      .def(nb::init<>())
+      .def_rw("sensor", &SourceSettings::sensor)
+      .def_rw("late", &SourceSettings::late)
+      .def_rw("clock_std", &SourceSettings::clock_std)
+      .def_rw("sensor_std_xy", &SourceSettings::sensor_std_xy)
+      .def_rw("sensor_std_yaw", &SourceSettings::sensor_std_yaw)
+      .def_rw("poorest", &SourceSettings::poorest);
+  nb::class_<LearnedSource>(m, "LearnedSource", "Estimates of a pose source.")
+      .def_ro("calibration", &LearnedSource::calibration, "Lateness [s], x, y [m] and yaw [rad] in base_link.")
+      .def_ro("segments", &LearnedSource::segments, "Segments learned between its poses.")
+      .def_ro("seen", &LearnedSource::seen, "Of each fix, whether there was a segment; [fixes].")
+      .def_ro("noise", &LearnedSource::noise,
+              "Of each fix, factors of the standard deviations (x, y, theta) beside the first; [fixes, 3].");
+  m.def(
+      "fix_names",
+      [] {
+        std::vector<std::string_view> names;
+        for (std::size_t i = 0; i < kPoseFixes; ++i) {
+          names.push_back(fix_name(static_cast<PoseFix>(i)));
+        }
+        return names;
+      },
+      "Fixes of a satellite receiver by number, in the order in which they become better.");
+}
 
 void bind_recordings(nb::module_& m) {
   m.attr("SAME_STAMP") = kSameStamp;  // [s] stamps no further apart are the same
@@ -153,6 +266,27 @@ void bind_recordings(nb::module_& m) {
       .def_prop_ro("jumps", [](const GatedPoses& gated) { return pose_rows(gated.jumps); });
   m.def("gate_poses", &gate_poses, "run"_a, "unknown_after"_a,
         "The poses of a recorded run as a learner uses them: outliers rejected, frames numbered again at jumps.");
+}
+
+void bind_evidence(nb::module_& m) {
+  nb::class_<GateCounts>(m, "GateCounts", "Poses that the gate accepted, and those that it did not.")
+      .def_ro("accepted", &GateCounts::accepted)
+      .def_ro("outliers", &GateCounts::outliers)
+      .def_ro("jumps", &GateCounts::jumps);
+  nb::class_<RecentEvidence> recent(m, "RecentEvidence",
+                                    "What poses and inputs did in the last two minutes of driving.");
+  recent.def_ro("counts", &RecentEvidence::counts);
+  define_rows(recent);
+  nb::class_<MotionEvidence> all(m, "MotionEvidence", "What shows whether poses and inputs contradict each other.");
+  all.def_prop_ro("counts", &MotionEvidence::counts)
+      .def_prop_ro("recent", &MotionEvidence::recent, "None where all that was driven is recent.");
+  define_rows(all);
+  m.def(
+      "motion_evidence",
+      [](const StreamSettings& settings, const std::vector<Recording>& runs) {
+        return motion_evidence(settings, runs);
+      },
+      "settings"_a, "runs"_a, "What a learner with these settings knows of contradictions after recorded runs.");
 }
 
 }  // namespace slipwise::bindings

@@ -83,6 +83,8 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
 
 }  // namespace
 
+Eigen::Matrix3d nothing_shared() { return Eigen::Matrix3d::Zero(); }
+
 BatchSearch::BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDatum> data, const BatchSettings& settings,
                          std::vector<SegmentLinearization> at_start)
     : model_(std::move(model)),

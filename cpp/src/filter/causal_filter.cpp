@@ -44,6 +44,17 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
   next_refit_ = kFirst;
 }
 
+CausalFilter::CausalFilter() : CausalFilter(MotionModel(), {}) {}
+CausalFilter::CausalFilter(const CausalFilter&) = default;
+CausalFilter::CausalFilter(CausalFilter&&) noexcept = default;
+CausalFilter& CausalFilter::operator=(const CausalFilter&) = default;
+CausalFilter& CausalFilter::operator=(CausalFilter&&) noexcept = default;
+CausalFilter::~CausalFilter() = default;
+
+Eigen::VectorXd CausalFilter::slip_std_at(const ReferenceSpeeds& speeds) const {
+  return force_.prior_std(slip_prior_std(model_.basis(), speeds, settings_.prior));
+}
+
 void CausalFilter::follow(const ReferenceSpeeds& speeds) {
   Eigen::VectorXd std = slip_std_at(speeds);
   if (!started_) {

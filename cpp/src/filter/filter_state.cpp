@@ -8,6 +8,9 @@
 
 namespace slipwise {
 
+FilterState::FilterState(const MotionModel& model, const NoiseSettings& noise)
+    : estimate{}, noise_scale(noise), scores(model) {}
+
 IekfUpdate FilterState::learn(const MotionModel& model, const InputHistory& inputs, const Segment& segment,
                               const NoiseSettings& noise, const IekfSettings& iekf) {
   auto at = linearize_segment(model, estimate.mean, inputs, segment);

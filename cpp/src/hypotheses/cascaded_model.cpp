@@ -37,6 +37,8 @@ bool stronger(const ChangeTest& a, const ChangeTest& b) {
 
 }  // namespace
 
+CascadedModel::CascadedModel() : CascadedModel(ModelAverage(), {}) {}
+
 CascadedModel::CascadedModel(ModelAverage slip, const CausalFilterSettings& settings)
     : model_(joined_model(slip.model())),
       noise_(settings.noise.shape),

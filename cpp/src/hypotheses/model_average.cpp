@@ -123,6 +123,13 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ac
   }
 }
 
+ModelAverage::ModelAverage() : ModelAverage("none", {MotionModel().basis()}, {}, {}, {}) {}
+ModelAverage::ModelAverage(const ModelAverage&) = default;
+ModelAverage::ModelAverage(ModelAverage&&) noexcept = default;
+ModelAverage& ModelAverage::operator=(const ModelAverage&) = default;
+ModelAverage& ModelAverage::operator=(ModelAverage&&) noexcept = default;
+ModelAverage::~ModelAverage() = default;
+
 void ModelAverage::check_sizes() const {
   const auto bases = static_cast<std::size_t>(prior_.size());
   bool fit = bases > 0 && places_.size() == bases && filters_.size() == sides() * bases &&

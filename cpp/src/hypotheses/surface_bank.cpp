@@ -41,6 +41,8 @@ SurfaceMemory joined(const SurfaceMemory& more, const SurfaceMemory& less) {
 
 }  // namespace
 
+SurfaceBank::SurfaceBank(const SurfaceSettings& settings) : settings_(settings) {}
+
 std::vector<SurfaceEvent> SurfaceBank::take_events() { return std::exchange(events_, {}); }
 
 void SurfaceBank::see(const InputHistory& inputs, const Segment& segment) {

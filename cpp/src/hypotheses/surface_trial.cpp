@@ -18,6 +18,11 @@ constexpr std::size_t kProbeEvery = 4;  // segments from one to the next
 
 }  // namespace
 
+Eigen::VectorXd SurfaceTrial::probabilities() const {
+  const Eigen::ArrayXd odds = (log_odds.array() - log_odds.maxCoeff()).exp();
+  return odds / odds.sum();
+}
+
 /// Keeps what was known before a segment, as long as one surface is driven on.
 void ModelAverage::note_recent() {
   if (!settings_.surfaces.remember || trial_) {

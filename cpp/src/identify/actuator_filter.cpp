@@ -35,6 +35,12 @@ ActuatorFilter::ActuatorFilter(const CausalFilterSettings& settings, std::size_t
   begin_with(prior, settings);
 }
 
+ActuatorFilter::ActuatorFilter(const ActuatorFilter&) = default;
+ActuatorFilter::ActuatorFilter(ActuatorFilter&&) noexcept = default;
+ActuatorFilter& ActuatorFilter::operator=(const ActuatorFilter&) = default;
+ActuatorFilter& ActuatorFilter::operator=(ActuatorFilter&&) noexcept = default;
+ActuatorFilter::~ActuatorFilter() = default;
+
 void ActuatorFilter::begin_with(const Estimate& known, const CausalFilterSettings& settings) {
   banks_.clear();
   const auto add = [&](std::vector<Eigen::Index> places, const std::vector<double BodyTwist::*>& parts) {

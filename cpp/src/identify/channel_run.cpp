@@ -149,6 +149,8 @@ ChannelFilter::Learned ChannelFilter::filter(const FollowedAxis& axis, const Axi
   return learned;
 }
 
+NormalEquations ChannelFilter::equations() const { return {information_, gradient_}; }
+
 ChannelRun ChannelFilter::result() const {
   const Information covariance = Cholesky(information_).inverse();
   const ChannelParameters step = covariance * gradient_;

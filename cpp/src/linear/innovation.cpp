@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cholesky factors of 3 x 3 covariances.
+// By Cholesky factors.
 #include "slipwise/linear/innovation.hpp"
 
 #include <Eigen/Cholesky>
@@ -8,8 +8,18 @@ namespace slipwise {
 
 double normalised_square(const Eigen::Vector3d& r, const Eigen::Matrix3d& s) { return r.dot(s.llt().solve(r)); }
 
+double normalised_square(const Eigen::VectorXd& r, const Eigen::Ref<const Eigen::MatrixXd>& s) {
+  return r.dot(Cholesky(s).solve(r));
+}
+
+Eigen::VectorXd solve_innovation(const Eigen::MatrixXd& s, const Eigen::VectorXd& b) { return Cholesky(s).solve(b); }
+
 Eigen::Matrix3Xd solve_innovation(const Eigen::Matrix3d& s, const Eigen::Ref<const Eigen::Matrix3Xd>& b) {
   return s.llt().solve(b);
+}
+
+Eigen::MatrixX3d kalman_gain(const Eigen::Matrix3d& s, const Eigen::Ref<const Eigen::Matrix3Xd>& hp) {
+  return solve_innovation(s, hp).transpose();
 }
 
 }  // namespace slipwise

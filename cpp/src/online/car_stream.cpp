@@ -29,6 +29,8 @@ BodyTwist faster(const BodyTwist& a, const BodyTwist& b) {
 
 }  // namespace
 
+CarStream::CarStream() : CarStream({}, {}, 1.0) {}
+
 CarStream::CarStream(const CarPrior& prior, const Pose2& sensor, double unknown_after)
     : sensor_(sensor), given_(unknown_after), filter_(prior) {
   if (prior.held) {

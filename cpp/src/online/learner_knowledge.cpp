@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a learner knew at a time: nothing measured later is in it.
+// What a learner knew at a time, nothing measured later being in it, and what changes that beside segments: sources of
+// poses that are decided, a drive that begins, cues of terrain.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "slipwise/filter/body_force.hpp"
 #include "slipwise/linear/same_stamp.hpp"
@@ -11,6 +18,18 @@
 #include "slipwise/online/motion_learner.hpp"
 
 namespace slipwise {
+namespace {
+
+constexpr std::size_t kMostEvents = 1000;  // that wait for a call
+
+}  // namespace
+
+MotionLearner::MotionLearner(const MotionLearner&) = default;
+MotionLearner::MotionLearner(MotionLearner&&) noexcept = default;
+MotionLearner& MotionLearner::operator=(const MotionLearner&) = default;
+MotionLearner& MotionLearner::operator=(MotionLearner&&) noexcept = default;
+MotionLearner::~MotionLearner() = default;
+
 Knowledge MotionLearner::now_known(double until) const {
   const auto motion = hypotheses_.posterior();
   return {
@@ -57,6 +76,114 @@ SegmentList MotionLearner::recent_before(double t) const {
     }
   }
   return found;
+}
+
+/// By the present estimate of the slip: where the baseline predicts best, by the best model that has some.
+void MotionLearner::learn_source() {
+  auto item = std::get<SourceSegment>(std::move(waiting_.front()));
+  waiting_.pop_front();
+  const double start = item.driven.segment.start;
+  KnownSources::Found found = sources_.see(*known_.back().slip, std::move(item));
+  if (found.poor) {
+    count({Stream::Pose, Reason::PoorPose, start});
+  }
+  waiting_.insert(waiting_.begin(), std::make_move_iterator(found.learned.begin()),
+                  std::make_move_iterator(found.learned.end()));
+}
+
+/// At the end of a run no better source can come any more.
+void MotionLearner::finish_sources() {
+  if (settings_.stream.sources.empty()) {
+    return;
+  }
+  for (DrivenSegment& segment : sources_.finish()) {
+    segment.known_at = std::max(segment.known_at, stream_.newest());
+    waiting_.emplace_back(std::move(segment));
+  }
+  work_through();
+}
+
+void MotionLearner::forget(double fraction) {
+  if (!(fraction >= 0.0) || !(fraction <= 1.0)) {
+    throw std::invalid_argument("what is forgotten is a fraction between 0 and 1, got " + std::to_string(fraction));
+  }
+  work_through();  // what waits was driven on the terrain that is forgotten
+  hypotheses_.forget(fraction);
+  known_.back() = now_known(known_.back().until);
+}
+
+void MotionLearner::start_drive(const DriveStart& start) {
+  end_run();
+  const std::size_t run = runs_;
+  const double ended = stream_.newest();
+  start_run();
+  hypotheses_.start_drive(disturbance_.law(), start);
+  note_surfaces(run, ended);
+  known_.back() = now_known(known_.back().until);
+}
+
+/// Without a memory there is nothing to recall: what is the terrain's becomes as unsure as after a suspicion.
+void MotionLearner::cue_surface(const std::string& label) {
+  const ModelAverageSettings& average = settings_.hypotheses.average;
+  if (!average.surfaces.remember) {
+    if (label.empty()) {
+      forget(average.change.forget);
+    }
+    return;
+  }
+  work_through();  // what waits was driven on the surface before
+  hypotheses_.cue_surface(disturbance_.law(), label);
+  note_surfaces(runs_, stream_.newest());
+  known_.back() = now_known(known_.back().until);
+}
+
+void MotionLearner::cue_terrain(const TerrainAnswer& answer) {
+  check_answer(answer);
+  work_through();  // what waits was driven before
+  hypotheses_.hear_terrain(disturbance_.law(), answer);
+  note_surfaces(runs_, stream_.newest());
+  known_.back() = now_known(known_.back().until);
+}
+
+void MotionLearner::begin_with(const KnownBefore& known, const DisturbanceModel& law, bool wheels) {
+  hypotheses_.begin_with(known, settings_.stream.segment_length, wheels);
+  if (settings_.learn_disturbance) {
+    disturbance_.begin_with(law);
+  }
+  note_surfaces(runs_, stream_.newest());
+  known_.back() = now_known(known_.back().until);
+}
+
+std::vector<std::string> MotionLearner::add_surfaces(const KnownBefore& other) {
+  std::vector<std::string> names = hypotheses_.add_surfaces(disturbance_.law(), other);
+  note_surfaces(runs_, stream_.newest());
+  return names;
+}
+
+void MotionLearner::consider_surfaces(double t) {
+  hypotheses_.consider_surfaces(disturbance_.law());
+  note_surfaces(runs_, t);
+}
+
+void MotionLearner::note_surfaces(std::size_t run, double t) {
+  for (SurfaceEvent& event : hypotheses_.take_surface_events()) {
+    surface_events_.push_back({.event = std::move(event), .run = run, .t = clock_.stamp(t)});
+  }
+  while (surface_events_.size() > kMostEvents) {
+    surface_events_.pop_front();
+  }
+}
+
+std::vector<DatedSurfaceEvent> MotionLearner::surface_events() {
+  std::vector<DatedSurfaceEvent> events(std::make_move_iterator(surface_events_.begin()),
+                                        std::make_move_iterator(surface_events_.end()));
+  surface_events_.clear();
+  return events;
+}
+
+SurfaceBank MotionLearner::surfaces() const {
+  const MotionLearner complete = completed();
+  return complete.hypotheses_.surfaces_now(complete.disturbance_.law());
 }
 
 }  // namespace slipwise

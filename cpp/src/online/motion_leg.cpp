@@ -16,6 +16,8 @@ constexpr double kSpareMemory = 0.1;  // [s] for what parameters may still chang
 
 }  // namespace
 
+Eigen::Matrix3d MotionLeg::covariance() const { return spread * by_lasting.transpose() + white; }
+
 MotionLeg motion_leg(const LegKnowledge& known, const DrivenSegment& driven) {
   const MotionPosterior& posterior = *known.posterior;
   const ExpectedDeviation deviation =

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Poses of the sources beside the first: in the order of their stamps, gated, and cut into segments.
+// What is pushed beside inputs and poses of the first source: attitudes, forces, yaw rates, and poses of other sources,
+// in the order of their stamps, gated, and cut into segments.
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "slipwise/linear/same_stamp.hpp"
@@ -109,6 +111,50 @@ void SegmentStream::emit_other(const PoseSource& source, const SegmentCut& cut, 
                      ? commanded(longer, kLookBack, segment.start)
                      : wheels_.slice(path_start(segment) - kWheelsBack, longer.end, SliceKind::Wheels);
   items_.emplace_back(SourceSegment{std::move(found), cut.first.source, classes_of(cut)});
+}
+
+void SegmentStream::push(const Measurement& measurement) {
+  std::visit(Takes{[&](const CommandSample& command) { push_command(command.sample); },
+                   [&](const WheelSample& wheels) { push_wheels(wheels.sample); },
+                   [&](const KnownForce& force) { push_force(force); }, [&](const Tilt& tilt) { push_attitude(tilt); },
+                   [&](const MeasuredPose& pose) { push_pose(pose); }, [&](const YawRate& rate) { push_gyro(rate); }},
+             measurement);
+}
+
+std::optional<Tilt> SegmentStream::push_attitude(const Tilt& measured) {
+  std::optional<Tilt> tilt;
+  if (arrives(Stream::Attitude, measured.t, std::array{measured.roll, measured.pitch})) {
+    tilt = attitudes_.level(measured);
+    if (tilt) {
+      tilts_.push(*tilt);
+    } else {
+      reject(Stream::Attitude, Reason::SteepAttitude, measured.t);
+    }
+  }
+  advance(newest_ - settings_.latency);
+  return tilt;
+}
+
+void SegmentStream::push_force(const KnownForce& force) {
+  if (arrives(Stream::Force, force.t, std::array{force.x, force.y})) {
+    if (tilts_.empty()) {
+      forces_.push(force);
+    } else {
+      reject(Stream::Force, Reason::ForceBesideAttitude, force.t);
+    }
+  }
+  advance(newest_ - settings_.latency);
+}
+
+void SegmentStream::push_gyro(const YawRate& sample) {
+  if (arrives(Stream::Gyro, sample.t, std::array{sample.rate})) {
+    gyro_.push(sample);
+    evidence_.push_gyro(sample);
+    if (settings_.heading_only) {
+      turn_on(sample);
+    }
+  }
+  advance(newest_ - settings_.latency);
 }
 
 }  // namespace slipwise

@@ -59,6 +59,8 @@ bool within_reach(const MeasuredPose& from, const Pose2& expected, const Measure
 
 }  // namespace
 
+PoseFilter::PoseFilter(const PoseFilterSettings& settings) : settings_(settings) {}
+
 void PoseFilter::restart() {
   timer_.restart();
   poses_.clear();

@@ -60,6 +60,16 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
   }
 }
 
+SegmentStream::SegmentStream(const SegmentStream&) = default;
+SegmentStream::SegmentStream(SegmentStream&&) noexcept = default;
+SegmentStream& SegmentStream::operator=(const SegmentStream&) = default;
+SegmentStream& SegmentStream::operator=(SegmentStream&&) noexcept = default;
+SegmentStream::~SegmentStream() = default;
+
+std::optional<CarCurves> SegmentStream::car_curves() const {
+  return car_ ? std::optional(car_->curves()) : std::nullopt;
+}
+
 void SegmentStream::start_run() {
   end_run();
   evidence_.start_run();

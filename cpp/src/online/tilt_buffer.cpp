@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "slipwise/linear/same_stamp.hpp"
+#include "slipwise/slip/term.hpp"
 
 namespace slipwise {
 namespace {

@@ -37,6 +37,12 @@ ElevationMap::ElevationMap(Eigen::MatrixXd elevation, Eigen::Vector2d origin, do
   rise_x_ = difference_of_rows(elevation_.transpose(), cell).transpose();
 }
 
+double ElevationMap::height(double x, double y) const { return bilinear(elevation_, x, y).value; }
+
+std::tuple<Eigen::MatrixXd, Eigen::Vector2d, double> ElevationMap::definition() const {
+  return {elevation_, origin_, cell_};
+}
+
 bool ElevationMap::holds(double x, double y) const {
   const double column = (x - origin_.x()) / cell_;
   const double row = (y - origin_.y()) / cell_;

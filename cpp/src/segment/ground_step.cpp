@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/linear/dual_number.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/segment/ground_along.hpp"

@@ -26,13 +26,16 @@ struct BatchSettings {
   Eigen::VectorXd start = {};
 };
 
+/// No covariance with any error.
+Eigen::Matrix3d nothing_shared();
+
 /// A segment, the inputs that it belongs to, and the covariance R of its measured chart.
 struct BatchDatum {
   InputHistory inputs;
   Segment segment;
   Eigen::Matrix3d noise;
   /// Covariance of its error with that of the datum before.
-  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d shared = nothing_shared();
 };
 
 struct BatchFit {

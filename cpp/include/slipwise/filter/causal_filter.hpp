@@ -24,8 +24,13 @@ namespace slipwise {
 
 class CausalFilter {
  public:
-  CausalFilter() : CausalFilter(MotionModel(), {}) {}  ///< of a model without parameters
+  CausalFilter();  ///< of a model without parameters
   CausalFilter(MotionModel model, const CausalFilterSettings& settings);
+  CausalFilter(const CausalFilter&);
+  CausalFilter(CausalFilter&&) noexcept;
+  CausalFilter& operator=(const CausalFilter&);
+  CausalFilter& operator=(CausalFilter&&) noexcept;
+  ~CausalFilter();
 
   /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 256 segments a refit
   /// of all of them begins; it takes effect a sixteenth as many segments later, whether `refit_slice` was called
@@ -59,9 +64,7 @@ class CausalFilter {
   /// Standard deviations of the prior now in force, [parameters].
   Eigen::VectorXd prior_std() const;
   /// Of slip, [slip], at other speeds.
-  Eigen::VectorXd slip_std_at(const ReferenceSpeeds& speeds) const {
-    return force_.prior_std(slip_prior_std(model_.basis(), speeds, settings_.prior));
-  }
+  Eigen::VectorXd slip_std_at(const ReferenceSpeeds& speeds) const;
   /// Learned factor of the noise variances of (x, y, theta).
   Eigen::Vector3d noise_scale() const { return state_.noise_scale.value(); }
   const NoiseSettings& noise() const { return settings_.noise; }

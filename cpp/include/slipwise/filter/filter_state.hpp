@@ -14,7 +14,7 @@ struct FilterState {
   ScoreCovariance scores;
 
   FilterState() = default;
-  FilterState(const MotionModel& model, const NoiseSettings& noise) : estimate{}, noise_scale(noise), scores(model) {}
+  FilterState(const MotionModel& model, const NoiseSettings& noise);
 
   /// Learns one segment.
   IekfUpdate learn(const MotionModel& model, const InputHistory& inputs, const Segment& segment,

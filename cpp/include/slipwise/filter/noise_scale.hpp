@@ -58,7 +58,7 @@ class NoiseScale {
   void follow(const Eigen::Vector3d& squared, const Eigen::Vector3d& expected);
 
   NoiseSettings settings_;
-  Eigen::Vector3d value_ = Eigen::Vector3d::Ones();
+  Eigen::Vector3d value_ = {1.0, 1.0, 1.0};
   double segments_ = 0.0;
 };
 

@@ -26,7 +26,7 @@ struct WheelSegment {
 /// joint model has.
 class CascadedModel {
  public:
-  CascadedModel() : CascadedModel(ModelAverage(), {}) {}
+  CascadedModel();
   /// `slip` has learned nothing yet; its inputs are wheel speeds.
   CascadedModel(ModelAverage slip, const CausalFilterSettings& settings);
 

@@ -32,7 +32,7 @@ struct AverageState {
   Eigen::VectorXd prior_std;
   /// Posterior / prior variance per parameter over the models that have it; 1: nothing learned, more: they disagree.
   Eigen::VectorXd variance_ratio;
-  Eigen::Vector3d noise_scale = Eigen::Vector3d::Zero();
+  Eigen::Vector3d noise_scale = {0.0, 0.0, 0.0};
   Eigen::VectorXd weights;  ///< one per model, they sum to 1
 };
 
@@ -40,10 +40,15 @@ struct AverageState {
 /// again a model of the same kind: the mean parameters over the union of the terms, with the spread in the covariance.
 class ModelAverage {
  public:
-  ModelAverage() : ModelAverage("none", {MotionModel().basis()}, {}, {}, {}) {}
+  ModelAverage();
   /// \throws std::invalid_argument when there is no basis.
   ModelAverage(std::string name, const std::vector<Basis>& bases, ActuatorParameters learned,
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
+  ModelAverage(const ModelAverage&);
+  ModelAverage(ModelAverage&&) noexcept;
+  ModelAverage& operator=(const ModelAverage&);
+  ModelAverage& operator=(ModelAverage&&) noexcept;
+  ~ModelAverage();
 
   /// Learns one segment with every model, after a test whether the terrain changed. Returns the update of the model
   /// that weighted most before.

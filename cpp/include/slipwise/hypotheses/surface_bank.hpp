@@ -60,7 +60,7 @@ struct LabelCounts {
 class SurfaceBank {
  public:
   SurfaceBank() = default;
-  explicit SurfaceBank(const SurfaceSettings& settings) : settings_(settings) {}
+  explicit SurfaceBank(const SurfaceSettings& settings);
 
   /// A drive begins somewhere: any known surface, or a new one.
   void start_drive(const Averages& averages, const DisturbanceModel& law, const DriveStart& start);

@@ -64,10 +64,7 @@ struct SurfaceTrial {
   Eigen::VectorXd log_odds;              ///< log probabilities but for a constant
   int segments = 0;                      ///< that the evidence comes from
 
-  Eigen::VectorXd probabilities() const {
-    const Eigen::ArrayXd odds = (log_odds.array() - log_odds.maxCoeff()).exp();
-    return odds / odds.sum();
-  }
+  Eigen::VectorXd probabilities() const;
 };
 
 }  // namespace slipwise

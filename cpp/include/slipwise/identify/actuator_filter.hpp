@@ -27,6 +27,11 @@ class ActuatorFilter {
   /// Priors, gate and Huber's bound are those of `settings`. Where `waiting` windows are at hand already, no refit
   /// begins before they are all learned.
   explicit ActuatorFilter(const CausalFilterSettings& settings, std::size_t waiting = 0);
+  ActuatorFilter(const ActuatorFilter&);
+  ActuatorFilter(ActuatorFilter&&) noexcept;
+  ActuatorFilter& operator=(const ActuatorFilter&);
+  ActuatorFilter& operator=(ActuatorFilter&&) noexcept;
+  ~ActuatorFilter();
 
   /// Begins with what was learned before, in the parameters of `model`.
   void begin_with(const Estimate& known, const CausalFilterSettings& settings);

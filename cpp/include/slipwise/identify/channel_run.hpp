@@ -70,7 +70,7 @@ class ChannelFilter {
   void learn(const ChannelWindow& window);
   ChannelRun result() const;
   /// Of the parameters, at the point.
-  NormalEquations equations() const { return {information_, gradient_}; }
+  NormalEquations equations() const;
   double cost() const { return cost_; }  ///< -2 log posterior of the point
 
   /// \throws std::invalid_argument where a loaded one does not fit the model.

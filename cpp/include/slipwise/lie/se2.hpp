@@ -22,28 +22,29 @@ struct Pose2 {
 
 /// The residual of a predicted chart (x, y, theta): the turn by its shorter way.
 inline Eigen::Vector3d chart_error(const Eigen::Vector3d& measured, const Eigen::Vector3d& predicted) {
-  Eigen::Vector3d error = measured - predicted;
-  error.z() = wrap_angle(error.z());
-  return error;
+  return {measured.x() - predicted.x(), measured.y() - predicted.y(), wrap_angle(measured.z() - predicted.z())};
+}
+
+/// (a, -b; b, a), by coefficients: an expression of Eigen would be compiled again wherever this header is included.
+inline Eigen::Matrix2d scaled_rotation(double a, double b) {
+  Eigen::Matrix2d matrix;
+  matrix(0, 0) = a;
+  matrix(0, 1) = -b;
+  matrix(1, 0) = b;
+  matrix(1, 1) = a;
+  return matrix;
 }
 
 /// Rotation by `theta` [rad].
-inline Eigen::Matrix2d rotation(double theta) {
-  const double c = std::cos(theta);
-  const double s = std::sin(theta);
-  return (Eigen::Matrix2d() << c, -s, s, c).finished();
-}
+inline Eigen::Matrix2d rotation(double theta) { return scaled_rotation(std::cos(theta), std::sin(theta)); }
 
 /// Vm of derivations/model.md: the displacement of a unit twist over a turn.
-inline Eigen::Matrix2d arc_matrix(const ArcFunctions<double>& arc) {
-  return (Eigen::Matrix2d() << arc.a, -arc.b, arc.b, arc.a).finished();
-}
+inline Eigen::Matrix2d arc_matrix(const ArcFunctions<double>& arc) { return scaled_rotation(arc.a, arc.b); }
 
 /// The pose reached by a constant body twist, tangent = twist * time = (forward, left, turn).
 inline Pose2 exp(const Eigen::Vector3d& tangent) {
   const auto arc = arc_functions(tangent.z());
-  const Eigen::Vector2d p = arc_matrix(arc) * tangent.head<2>();
-  return {p.x(), p.y(), tangent.z()};
+  return {arc.a * tangent.x() - arc.b * tangent.y(), arc.b * tangent.x() + arc.a * tangent.y(), tangent.z()};
 }
 
 /// The constant body twist that reaches `pose` by a turn of at most half a turn: exp(log(pose)) = pose up to whole
@@ -72,21 +73,21 @@ inline Pose2 inverse(const Pose2& pose) {
 inline Pose2 between(const Pose2& world_a, const Pose2& world_b) { return compose(inverse(world_a), world_b); }
 
 /// Ad_X: maps a tangent at the robot to the same motion observed from the frame of the pose.
-inline Eigen::Matrix3d adjoint(const Pose2& pose) {
-  Eigen::Matrix3d ad = Eigen::Matrix3d::Identity();
-  ad.topLeftCorner<2, 2>() = rotation(pose.theta);
-  ad(0, 2) = pose.y;
-  ad(1, 2) = -pose.x;
-  return ad;
-}
+Eigen::Matrix3d adjoint(const Pose2& pose);
 
 /// E of derivations/model.md: derivative of the chart (x, y, theta) of exp(tangent) by the tangent; `arc` is of
 /// its turn.
 inline Eigen::Matrix3d chart_jacobian(const Eigen::Vector3d& tangent, const ArcFunctions<double>& arc) {
-  Eigen::Matrix3d e = Eigen::Matrix3d::Identity();
-  e.topLeftCorner<2, 2>() = arc_matrix(arc);
+  Eigen::Matrix3d e;
+  e(0, 0) = arc.a;
+  e(1, 0) = arc.b;
+  e(2, 0) = 0.0;
+  e(0, 1) = -arc.b;
+  e(1, 1) = arc.a;
+  e(2, 1) = 0.0;
   e(0, 2) = arc.da * tangent.x() - arc.db * tangent.y();
   e(1, 2) = arc.db * tangent.x() + arc.da * tangent.y();
+  e(2, 2) = 1.0;
   return e;
 }
 
@@ -95,21 +96,12 @@ inline Eigen::Matrix3d chart_jacobian(const Eigen::Vector3d& tangent) {
 }
 
 /// Jr: exp(tangent + d) = exp(tangent) exp(Jr d) to first order.
-inline Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& tangent) {
-  Eigen::Matrix3d jacobian = chart_jacobian(tangent);
-  jacobian.topRows<2>() = rotation(-tangent.z()) * jacobian.topRows<2>().eval();
-  return jacobian;
-}
+Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& tangent);
 
 /// Jl: exp(tangent + d) = exp(Jl d) exp(tangent) to first order.
-inline Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& tangent) { return right_jacobian(-tangent); }
+Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& tangent);
 
 /// Phi(b, a) in the world chart: derivative of a later pose of one rollout by an earlier one, exact (thesis 4.8).
-inline Eigen::Matrix3d transition(const Pose2& world_a, const Pose2& world_b) {
-  Eigen::Matrix3d phi = Eigen::Matrix3d::Identity();
-  phi(0, 2) = -(world_b.y - world_a.y);
-  phi(1, 2) = world_b.x - world_a.x;
-  return phi;
-}
+Eigen::Matrix3d transition(const Pose2& world_a, const Pose2& world_b);
 
 }  // namespace slipwise

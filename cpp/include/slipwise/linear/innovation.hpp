@@ -10,15 +10,11 @@ namespace slipwise {
 
 /// r^T S^-1 r, the normalised innovation squared (NIS).
 double normalised_square(const Eigen::Vector3d& r, const Eigen::Matrix3d& s);
-inline double normalised_square(const Eigen::VectorXd& r, const Eigen::Ref<const Eigen::MatrixXd>& s) {
-  return r.dot(Cholesky(s).solve(r));
-}
+double normalised_square(const Eigen::VectorXd& r, const Eigen::Ref<const Eigen::MatrixXd>& s);
 
 /// S^-1 B.
 Eigen::Matrix3Xd solve_innovation(const Eigen::Matrix3d& s, const Eigen::Ref<const Eigen::Matrix3Xd>& b);
-inline Eigen::VectorXd solve_innovation(const Eigen::MatrixXd& s, const Eigen::VectorXd& b) {
-  return Cholesky(s).solve(b);
-}
+Eigen::VectorXd solve_innovation(const Eigen::MatrixXd& s, const Eigen::VectorXd& b);
 
 /// S = H P H^T + R, of as many rows as the Jacobian H has.
 template <class Jacobian, class Noise>
@@ -36,8 +32,6 @@ auto innovation_covariance(const Eigen::MatrixXd& prior, const Eigen::MatrixBase
 }
 
 /// (S^-1 H P)^T, the Kalman gain, of H P.
-inline Eigen::MatrixX3d kalman_gain(const Eigen::Matrix3d& s, const Eigen::Ref<const Eigen::Matrix3Xd>& hp) {
-  return solve_innovation(s, hp).transpose();
-}
+Eigen::MatrixX3d kalman_gain(const Eigen::Matrix3d& s, const Eigen::Ref<const Eigen::Matrix3Xd>& hp);
 
 }  // namespace slipwise

@@ -17,7 +17,7 @@ namespace slipwise {
 /// Keeps the commands as they were given, learns the car's curves from poses, and remembers what was known when.
 class CarStream {
  public:
-  CarStream() : CarStream({}, {}, 1.0) {}
+  CarStream();
   /// `sensor` is where the pose sensor sits in base_link; a command is unknown once it is older than `unknown_after`.
   CarStream(const CarPrior& prior, const Pose2& sensor, double unknown_after);
 

@@ -111,6 +111,11 @@ class MotionLearner {
  public:
   /// \throws std::invalid_argument when a setting is impossible.
   explicit MotionLearner(const LearnerSettings& settings);
+  MotionLearner(const MotionLearner&);
+  MotionLearner(MotionLearner&&) noexcept;
+  MotionLearner& operator=(const MotionLearner&);
+  MotionLearner& operator=(MotionLearner&&) noexcept;
+  ~MotionLearner();
 
   /// The run so far is complete and another begins: nothing is joined across runs; what was learned stays.
   void start_run();

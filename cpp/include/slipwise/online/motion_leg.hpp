@@ -25,7 +25,7 @@ struct MotionLeg {
   Pose2 sensor;                                      ///< of the pose sensor in base_link
 
   /// Covariance of the chart by itself.
-  Eigen::Matrix3d covariance() const { return spread * by_lasting.transpose() + white; }
+  Eigen::Matrix3d covariance() const;
 };
 
 /// What predicts a leg.

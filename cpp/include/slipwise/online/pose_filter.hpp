@@ -43,7 +43,7 @@ class PoseFilter {
   /// Predicts the motion from a time to a later one [s].
   using Legs = std::function<MotionLeg(double start, double end)>;
 
-  explicit PoseFilter(const PoseFilterSettings& settings) : settings_(settings) {}
+  explicit PoseFilter(const PoseFilterSettings& settings);
 
   /// Another run begins.
   void restart();

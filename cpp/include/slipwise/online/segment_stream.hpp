@@ -90,6 +90,11 @@ using StreamItem = std::variant<WheelSegment, SlipSegment, TwistSegment, DrivenS
 class SegmentStream {
  public:
   explicit SegmentStream(const StreamSettings& settings);
+  SegmentStream(const SegmentStream&);
+  SegmentStream(SegmentStream&&) noexcept;
+  SegmentStream& operator=(const SegmentStream&);
+  SegmentStream& operator=(SegmentStream&&) noexcept;
+  ~SegmentStream();
 
   /// The run so far is complete, and another begins. Nothing is joined across runs.
   void start_run();
@@ -150,7 +155,7 @@ class SegmentStream {
   /// What motion is predicted from.
   const InputBuffer& inputs() const { return settings_.from_commands ? commands_ : wheels_; }
   /// What throttle and steering do, where they are the commands.
-  std::optional<CarCurves> car_curves() const { return car_ ? std::optional(car_->curves()) : std::nullopt; }
+  std::optional<CarCurves> car_curves() const;
 
   /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
   void check_loaded(const SegmentStream& made) const;

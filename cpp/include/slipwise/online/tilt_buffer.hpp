@@ -6,8 +6,8 @@
 #include <memory>
 #include <optional>
 
+#include "slipwise/segment/body_gravity.hpp"
 #include "slipwise/segment/ground.hpp"
-#include "slipwise/segment/path_step.hpp"
 
 namespace slipwise {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "slipwise/linear/dual_number.hpp"
+#include "slipwise/linear/plain_value.hpp"
 
 namespace slipwise {
 
@@ -36,12 +36,12 @@ class ElevationMap {
     return {along_x.value, along_y.value, along_x.by_x, along_x.by_y, along_y.by_x, along_y.by_y};
   }
   /// [m]
-  double height(double x, double y) const { return bilinear(elevation_, x, y).value; }
+  double height(double x, double y) const;
   /// Whether it has nodes around (x, y) [m].
   bool holds(double x, double y) const;
 
   /// What it is made of.
-  auto definition() const { return std::tuple(elevation_, origin_, cell_); }
+  std::tuple<Eigen::MatrixXd, Eigen::Vector2d, double> definition() const;
 
  private:
   template <class Scalar>

@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "slipwise/lie/angle.hpp"
-#include "slipwise/linear/dual_number.hpp"
+#include "slipwise/linear/plain_value.hpp"
 #include "slipwise/segment/ground.hpp"
 
 namespace slipwise {

@@ -23,16 +23,16 @@ enum class Integrator : std::uint8_t { Exact, Rk4 };
 
 /// The robot's path observed from its start. Between positions it begins where the first of their chords does.
 struct SegmentPath {
-  std::vector<double> times;                               ///< [steps + 1], [s], in pose stamps
-  std::vector<Pose2> poses;                                ///< [steps + 1], the first is the origin
-  std::vector<Eigen::Vector3d> tangents;                   ///< [steps], twist * duration with slip
-  std::vector<ActuatorStep> drive;                         ///< [steps], the drive without slip
-  Pose2 sensor;                                            ///< pose in base_link of the sensor that measures the path
-  std::array<PoseStdRatio, 2> pose_std_ratio = {};         ///< of the segment's measured poses
-  std::optional<CoursePlaces> course = {};                 ///< where the segment lies between positions
-  Eigen::Vector3d noise_factor = Eigen::Vector3d::Ones();  ///< of the variances of what measures it
-  bool own_noise = false;                                  ///< a learned scale of noise is not that of what measures it
-  std::optional<double> heading_std = {};                  ///< of the turn, where that alone is measured [rad]
+  std::vector<double> times;                        ///< [steps + 1], [s], in pose stamps
+  std::vector<Pose2> poses;                         ///< [steps + 1], the first is the origin
+  std::vector<Eigen::Vector3d> tangents;            ///< [steps], twist * duration with slip
+  std::vector<ActuatorStep> drive;                  ///< [steps], the drive without slip
+  Pose2 sensor;                                     ///< pose in base_link of the sensor that measures the path
+  std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the segment's measured poses
+  std::optional<CoursePlaces> course = {};          ///< where the segment lies between positions
+  Eigen::Vector3d noise_factor = {1.0, 1.0, 1.0};   ///< of the variances of what measures it
+  bool own_noise = false;                           ///< a learned scale of noise is not that of what measures it
+  std::optional<double> heading_std = {};           ///< of the turn, where that alone is measured [rad]
 
   /// Where the sensor is at the points of the course, seen from the path's start.
   CoursePositions course_positions() const;

@@ -8,17 +8,10 @@
 
 #include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/lie/se2.hpp"
+#include "slipwise/segment/body_gravity.hpp"
 #include "slipwise/slip/slip_surface.hpp"
 
 namespace slipwise {
-
-/// Body-frame gravity [m/s^2], zero on flat terrain, and the heading in the frame of the poses.
-struct BodyGravity {
-  double gx = 0.0;
-  double gy = 0.0;
-  double cos_yaw = 1.0;
-  double sin_yaw = 0.0;
-};
 
 /// The same of a robot that is headed like this [rad].
 inline BodyGravity headed(BodyGravity gravity, double yaw) {

@@ -30,7 +30,7 @@ struct Chord {
 /// Where several sources measure poses: what is particular to the one that measured a segment.
 struct SegmentSource {
   std::size_t number = 0;
-  Eigen::Vector3d noise_factor = Eigen::Vector3d::Ones();  ///< of the variances of (x, y, theta)
+  Eigen::Vector3d noise_factor = {1.0, 1.0, 1.0};  ///< of the variances of (x, y, theta)
   bool own_noise = false;  ///< the factor is all of the noise's size: the filters' scale is not that of this source
   /// The segment says where its sensor sits, and its stamps are those of the inputs, even where the model learns the
   /// place and the clock of the first.
