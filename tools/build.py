@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import re
+import resource
 import subprocess
 import sys
 import time
@@ -19,7 +20,7 @@ BUILD = ROOT / "build/package"
 PIP = (sys.executable, "-m", "pip", "install")
 NINJA_STEP = re.compile(r"^\[(\d+)/(\d+)\]")
 PIP_STEP = re.compile(r"^(?:Collecting|Downloading|Installing collected packages) *:? *([\w.-]*)")
-PROCESSOR_MINUTES = 7  # of the first compilation, without a cache of a compiler
+PROCESSOR_SECONDS = 280  # of the first compilation and installation by GCC 12, without a cache of a compiler
 EVERY = 20.0  # s between lines where nobody watches; a terminal has one line that changes
 
 
@@ -112,18 +113,28 @@ def installation() -> Job:
 
 
 def announcement() -> str:
-    """Return what the first build does and costs: GCC 12 was measured."""
+    """Return what the first build does and costs."""
     cores = os.cpu_count() or 1
-    here = max(1, round(PROCESSOR_MINUTES / cores))
     return (
-        f"compiling the C++ core, once: about {PROCESSOR_MINUTES} minutes of one core, {here} on {cores}; "
-        "pip installs what slipwise needs beside it"
+        "compiling the C++ core, once, while pip installs what slipwise needs: about "
+        f"{PROCESSOR_SECONDS} s of processor time, {round(PROCESSOR_SECONDS / cores, -1):.0f} s "
+        f"on {cores} cores"
+    )
+
+
+def cost(seconds: float) -> str:
+    """Return what the commands so far took, to be compared with the announcement."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return (
+        f"compiled and installed in {seconds:.0f} s, {used.ru_utime + used.ru_stime:.0f} s of processor time"
     )
 
 
 def main(parts: list[str]) -> int:
     """Build; `parts` of pyproject.toml are installed beside, where any are named."""
-    if not (BUILD / "build.ninja").exists():
+    new = not (BUILD / "build.ninja").exists()
+    start = time.monotonic()
+    if new:
         print(announcement(), flush=True)
     first = [compilation(), *([downloads(parts)] if parts else [])]
     for jobs in (first, [installation()]):
@@ -137,6 +148,8 @@ def main(parts: list[str]) -> int:
                     file=sys.stderr,
                 )
                 return 1
+    if new:
+        print(cost(time.monotonic() - start), flush=True)
     return 0
 
 

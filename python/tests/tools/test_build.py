@@ -2,10 +2,11 @@
 """The build says how far it is, and what failed."""
 
 import io
+import re
 import sys
 
 import pytest
-from tools.build import PROCESSOR_MINUTES, Job, announcement, ninja_progress, pip_progress, watch
+from tools.build import PROCESSOR_SECONDS, Job, announcement, cost, ninja_progress, pip_progress, watch
 
 
 def test_steps_of_ninja_and_of_pip_are_recognised() -> None:
@@ -32,5 +33,13 @@ def test_a_job_ends_at_the_first_command_that_fails_and_keeps_what_it_said() -> 
 def test_the_first_build_says_at_its_start_what_it_does_and_costs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("os.cpu_count", lambda: 4)
     text = announcement()
-    assert f"{PROCESSOR_MINUTES} minutes of one core" in text
-    assert "2 on 4" in text
+    assert f"{PROCESSOR_SECONDS} s of processor time" in text
+    assert f"{round(PROCESSOR_SECONDS / 4, -1):.0f} s on 4 cores" in text
+
+
+def test_the_first_build_says_at_its_end_what_it_cost() -> None:
+    busy = (sys.executable, "-c", "import time\nwhile time.process_time() < 1.1: pass")
+    watch([Job("compiling", (busy,), ninja_progress)], io.StringIO())
+    said = re.fullmatch(r"compiled and installed in 12 s, (\d+) s of processor time", cost(12.3))
+    assert said is not None
+    assert int(said[1]) >= 1
