@@ -57,7 +57,7 @@ def run_node(
     script: Sequence[Sample],
     table: LiveTable | None = None,
     input_name: str = "wheel",
-    basis: str = "auto",
+    basis: str = "edd-2",  # of the robot that most scripts drive; the loop does not depend on it
 ) -> tuple[Built, Scripted]:
     """Run a node over a script; return what it was built of, and the transport."""
     transport = Scripted(script)

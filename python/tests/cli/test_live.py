@@ -55,19 +55,6 @@ def test_labels_without_a_memory_are_refused(drive: Path, capsys: pytest.Capture
     assert "add --memory" in capsys.readouterr().err
 
 
-def test_a_start_model_that_remembers_surfaces_is_begun_with(
-    drive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    first, second = tmp_path / "first.yaml", tmp_path / "second.yaml"
-    replay = ["live", "--replay", str(drive), "--rate", "0", "--input", "wheel", "--memory"]
-    assert run([*replay, "--surface", "hall", "--quiet", "-o", str(first)]) == 0
-    capsys.readouterr()
-    assert run([*replay, "--model", str(first), "-o", str(second)]) == 0
-    assert "the surface is hall, as before" in capsys.readouterr().out
-    (hall,) = sw.load_model(second).content.surfaces
-    assert (hall.name, hall.visits) == ("hall", 2)
-
-
 @pytest.mark.slow
 def test_a_process_that_is_killed_loses_what_came_after_the_last_save(drive: Path, tmp_path: Path) -> None:
     cache = ["--cache", str(tmp_path)]

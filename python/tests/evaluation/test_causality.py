@@ -104,7 +104,7 @@ def by_name(evaluation: Evaluation) -> dict[tuple[str, float], Predictions]:
 def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: str) -> None:
     whole = evaluate(log, input=input_name, options=OPTIONS)
     first, last = whole.predictions[0].t_start[0], whole.predictions[0].t_end[-1]
-    for fraction in (0.3, 0.55, 0.8):
+    for fraction in (0.4, 0.8):
         until = float(first + fraction * (last - first))
         part = evaluate(cut_off(log, until), input=input_name, options=OPTIONS)
         for key, here in by_name(part).items():

@@ -85,7 +85,9 @@ def sound(seconds: float = DRIVE.seconds) -> Log:
     return sound_log(replace(DRIVE, seconds=seconds))
 
 
-def lived(log: Log, folder: Path, input_name: str = "wheel", **table: object) -> tuple[Built, Scripted]:
+def lived(
+    log: Log, folder: Path, input_name: str = "wheel", basis: str = "edd-2", **table: object
+) -> tuple[Built, Scripted]:
     """Run a node that hands on whatever it may; contradictions do not depend on the basis."""
     (run,) = prepare_run(log, input_name)
     apply = ApplyTable(
@@ -98,7 +100,7 @@ def lived(log: Log, folder: Path, input_name: str = "wheel", **table: object) ->
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(applied, "RATE", 1.0)  # at once
         patch.setenv("ROS_DISTRO", "jazzy")
-        return run_node(list(samples_of(run)), LiveTable(apply=apply, **table), input_name, "edd-2")  # type: ignore[arg-type]
+        return run_node(list(samples_of(run)), LiveTable(apply=apply, **table), input_name, basis)  # type: ignore[arg-type]
 
 
 def faults_of(built: Built, transport: Scripted, folder: Path) -> list[str]:
@@ -203,12 +205,12 @@ def test_what_a_long_good_drive_handed_on_is_withdrawn_within_two_minutes_and_st
 
 def test_a_start_model_is_what_is_there_again_after_a_contradiction(tmp_path: Path) -> None:
     start = tmp_path / "start.yaml"
-    built, _ = lived(sound(), tmp_path)
+    built, _ = lived(sound(), tmp_path, basis="auto")
     learned = built.learning.valid
     assert learned is not None
     learned.save(start)
     (tmp_path / "apply").mkdir()
-    built, transport = lived(stopped(sound(), HALF), tmp_path / "apply", model=str(start))
+    built, transport = lived(stopped(sound(), HALF), tmp_path / "apply", basis="auto", model=str(start))
     assert any("are withdrawn" in text for text in transport.said)
     again = parse_model((tmp_path / "apply" / "model.yaml").read_text(), where="")
     assert again.content.parameters == learned.content.parameters

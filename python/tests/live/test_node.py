@@ -33,7 +33,7 @@ def test_the_start_model_is_published_once_however_often_nothing_valid_is_found(
     start = tmp_path / "start.yaml"
     make_model(named("edd-2")).save(start)
     no_slip = replace(SLIP, seconds=60.0, alpha=(0.0, 0.0), lag=0.0, delay=0.0)
-    built, transport = run_node(driven(no_slip), LiveTable(model=str(start)))
+    built, transport = run_node(driven(no_slip), LiveTable(model=str(start)), basis="auto")
     assert built.learning.segments > 20
     assert [which for which, _ in models(transport.outputs)] == [
         "the start model; the learned one is not yet valid"
@@ -75,7 +75,7 @@ def test_the_column_at_start_holds_start_values_where_nothing_is_handed_on() -> 
 @pytest.mark.parametrize("attitude", [False, True])
 def test_terms_of_gravity_are_tried_where_poses_are_said_to_have_an_attitude(attitude: bool) -> None:
     (run,) = prepare_run(hilly_log(1, Hills(seconds=60.0)), "command")
-    built, _ = run_node(list(samples_of(run)), LiveTable(attitude=attitude), "command")
+    built, _ = run_node(list(samples_of(run)), LiveTable(attitude=attitude), "command", "auto")
     model = built.learning.learner.model(limits=False)
     assert any(".gy" in name for name in model.parameters) == attitude
 

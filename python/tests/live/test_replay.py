@@ -55,16 +55,15 @@ def without_origin(text: str) -> str:
     return "\n".join(line for line in text.splitlines() if "sha256" not in line and "logs:" not in line)
 
 
-@pytest.mark.parametrize("input_name", ["wheel", "command"])
-def test_replayed_it_is_what_calibrate_writes_to_the_byte(log: Log, input_name: str) -> None:
-    built = build_node(Replay(log, input_name, rate=0.0), input_name, Settings())
+def test_replayed_it_is_what_calibrate_writes_to_the_byte(log: Log) -> None:
+    built = build_node(Replay(log, "command", rate=0.0), "command", Settings())
     built.node.run()
     model, _ = built.learning.learner.judged_model(log=log)
-    assert model.to_yaml() == sw.calibrate(log, input=input_name).model.to_yaml()
+    assert model.to_yaml() == sw.calibrate(log, input="command").model.to_yaml()
 
 
-@pytest.mark.parametrize("input_name", ["wheel", "command"])
-def test_replayed_positions_are_what_calibrate_writes_to_the_byte(log: Log, input_name: str) -> None:
+def test_replayed_positions_are_what_calibrate_writes_to_the_byte(log: Log) -> None:
+    input_name = "wheel"
     runs = tuple(replace(run, poses=replace(run.poses, course=True)) for run in log.runs)
     positions = Log(runs=runs)
     settings = make_settings({"live": {"positions": True}})

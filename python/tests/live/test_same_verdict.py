@@ -17,7 +17,7 @@ from slipwise.live.coming import coming_of
 from slipwise.live.replay import Replay
 from slipwise.logs import Log, LogOptions, open_log
 
-QUICK = ("base_wheel_yawzero", "base_command_flipv", "base_command_spike15")
+QUICK = ("base_command_flipv",)
 
 
 def difference(log: Log, input_name: str, basis: str = "auto") -> str:
