@@ -148,6 +148,17 @@ def test_too_little_is_said_in_one_line() -> None:
         sw.MotionLearner("gps")
 
 
+def test_forces_ahead_are_rows_after_the_newest_measurement(log: Log) -> None:
+    learner, _ = first_half(log, "command")
+    now, inputs = learner._core.newest, [(learner._core.newest + 0.1, 0.5, 0.0)]
+    without = learner.predict(inputs, horizon=1.0).poses
+    pushed = learner.predict(inputs, horizon=1.0, forces=[(now + 0.1, 0.0, 0.5)]).poses
+    np.testing.assert_allclose(pushed[-1], without[-1], atol=1e-9)  # its model has no terms of gravity
+    for wrong in ([(now + 0.1, 0.5)], [(now - 1.0, 0.0, 0.5)], [(now + 0.1, 0.0, np.inf)]):
+        with pytest.raises(SlipwiseError, match="forces"):
+            learner.predict(inputs, horizon=1.0, forces=wrong)
+
+
 def first_half(log: Log, input_name: str) -> tuple[sw.MotionLearner, list[Row]]:
     """A learner of the first half of the rows, and the others."""
     learner, rows = sw.MotionLearner(input_name), rows_of(log)
