@@ -131,6 +131,7 @@ def commands_of(seed: int, *, seconds: float = 12.0) -> Floats:
 
 
 def expected(model: Model, commands: Floats, window: Window) -> Floats:
+    model = model.body  # where the robot is, by the clock of the commands
     t, v, omega = (np.ascontiguousarray(column) for column in commands.T)
     given = _core.InputHistory(t, v, np.zeros_like(v), omega)
     drive = window.drive
