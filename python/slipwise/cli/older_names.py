@@ -45,6 +45,13 @@ RENAMED: dict[str, dict[str, str]] = {
 }
 
 
+#: Options of reading a log that are gone, each with its value, and what holds now.
+GONE = {
+    "--most-unpacked": "512 MiB at most are unpacked; unpack a larger file first",
+    "--most-fetched": "4096 MiB at most are fetched; copy a larger file first",
+}
+
+
 def with_new_names(arguments: Sequence[str]) -> list[str]:
     """Return the arguments with options under their present names, and note each older one on stderr."""
     command, *given = arguments
@@ -59,7 +66,10 @@ def with_new_names(arguments: Sequence[str]) -> list[str]:
                 result += [name, named]
                 continue
             rest, equals = itertools.chain([named] if named else [], rest), ""
-        if renamed.get(name) == "":
+        if name in GONE:
+            print(f"note: {command} {name} is gone: {GONE[name]}", file=sys.stderr)
+            _ = value if equals else next(rest, None)
+        elif renamed.get(name) == "":
             print(f"note: {command} {name} is gone: no PNG is written any more", file=sys.stderr)
         elif name in renamed:
             print(f"note: {command} {name} is now {renamed[name]}", file=sys.stderr)
@@ -95,11 +105,13 @@ def notes_of_older_names() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FutureWarning)
         warnings.simplefilter("always", OlderNames)
-        show = warnings.showwarning
+        show, noted = warnings.showwarning, set[str]()
 
         def note(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
             if category is OlderNames:
-                print(f"note: {message}", file=sys.stderr)
+                if str(message) not in noted:  # a file is read for the log and for learning
+                    print(f"note: {message}", file=sys.stderr)
+                noted.add(str(message))
             else:
                 show(message, category, *where, **more)
 

@@ -69,6 +69,8 @@ def test_options_are_read_under_their_older_names_with_a_note(capsys: pytest.Cap
     assert "note: live --vehicle is now --name" in notes
     assert with_new_names(["plan", "--no-picture", "--json", "-"]) == ["plan", "--json", "-"]
     assert "--no-picture is gone" in capsys.readouterr().err
+    assert with_new_names(["inspect", "--most-fetched", "9", "a.csv"]) == ["inspect", "a.csv"]
+    assert "--most-fetched is gone: 4096 MiB at most" in capsys.readouterr().err
     for driven in ("mecanum.yaml", "dart"):
         assert with_new_names(["live", "--vehicle", driven]) == ["live", "--vehicle", driven]
     now = ["calibrate", "a.csv", "--vehicle", "husky", "--set", "estimator=iekf"]
