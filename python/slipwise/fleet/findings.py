@@ -38,6 +38,7 @@ class Finding:
     std: float
     chance: float  # p-value; of a drift, of its trend and its random walk together
     alarm: bool = False
+    least: float = math.nan  # size from which on it would alarm alone, of an odd one
     walk: float = math.nan  # standard deviation of a random walk after a kilometre, of a drift
     now: float = math.nan  # the parameter after the last log by that walk, of a drift
     now_std: float = math.nan
@@ -148,9 +149,15 @@ def _with_odd(found: Sequence[ParameterFindings]) -> list[ParameterFindings]:
         estimate[at], std[at] = each.estimate, each.std
         weight[at] = 1.0 if each.prior is None else each.prior.weight
         measured.append(Estimates(estimate, std, weight))
-    compared = []
-    for each, odd in zip(found, odd_ones(measured), strict=True):
-        mine = [Finding(vehicles[k], each.parameter, "odd", o.size, o.std, o.chance) for k, o in odd.items()]
+    compared, odd_ones_of = [], odd_ones(measured)
+    kinds = [finding.kind for each in found for finding in each.findings]
+    kinds += ["odd" for odd in odd_ones_of for _ in odd]
+    alarming = FALSE_DISCOVERIES * WEIGHTS["odd"] / sum(WEIGHTS[kind] for kind in kinds) if kinds else 0.0
+    for each, odd in zip(found, odd_ones_of, strict=True):
+        mine = [
+            Finding(vehicles[k], each.parameter, "odd", o.size, o.std, o.chance, least=o.least(alarming))
+            for k, o in odd.items()
+        ]
         compared.append(replace(each, findings=(*mine, *each.findings)))
     return compared
 

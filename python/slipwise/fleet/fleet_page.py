@@ -98,6 +98,9 @@ def _charts(figures: Sequence[str]) -> str:
     return first + (details(f"{len(figures) - SHOWN_AT_ONCE} more parameters", rest) if rest else "")
 
 
+_ASKED = ("lon.V", "ang.w", "speed per throttle", "curvature per steering")  # parameters
+
+
 def _difference(found: ParameterFindings) -> float:
     """Return how much vehicles differ in a parameter, in standard deviations of each vehicle's estimate."""
     return float(np.std(found.estimate) / max(float(np.median(found.std)), 1e-12))
@@ -164,7 +167,19 @@ def summary(
         *([f"{left} could not be used."] if unusable else []),
         *([warned] if warned else []),
         tested,
+        *_least_words(findings),
     ]
+
+
+def _least_words(findings: Sequence[ParameterFindings]) -> list[str]:
+    """Say how large a difference these logs could show, in what an owner asks for first."""
+    said = []
+    for each in findings:
+        least = [finding.least for finding in each.findings if finding.kind == "odd"]
+        if each.parameter in _ASKED and least:
+            said.append(f"{number(min(least), 2)} {each.unit} in {each.parameter}")
+    words = f"With these logs a vehicle unlike the others stands out from {', '.join(said)} on."
+    return [words] if said else []
 
 
 def _alarms(findings: Sequence[ParameterFindings]) -> str:

@@ -37,6 +37,16 @@ class Odd:
     size: float  # off the others' mean
     std: float
     chance: float  # that one of this type is so far off
+    likely: Floats  # how likely each of the `RATIOS` is,
+    stds: Floats  # and the standard deviation of a new one then
+
+    def least(self, chance: float) -> float:
+        """Return the size from which on one of this type is so far off by a smaller chance alone."""
+        low, high = 0.0, 100.0 * float(self.stds.max())
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if _chance(middle / self.stds, self.likely) > chance else (low, middle)
+        return high
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,11 +70,15 @@ def odd_ones(parameters: Sequence[Estimates]) -> list[dict[int, Odd]]:
         places = [k for k, each in enumerate(parameters) if _compared(each, vehicle)]
         others = [_others(parameters[k], vehicle) for k in places]
         for k, said, likely in zip(places, others, _likely([each.evidence for each in others]), strict=True):
-            z = np.abs(said.off) / said.std
-            chance = sum(p * math.erfc(each / math.sqrt(2.0)) for p, each in zip(likely, z, strict=True))
+            chance = _chance(np.abs(said.off) / said.std, likely)
             std = math.sqrt(float(likely @ said.std**2))
-            found[k][vehicle] = Odd(float(likely @ said.off), std, min(float(chance), 1.0))
+            found[k][vehicle] = Odd(float(likely @ said.off), std, chance, likely, said.std)
     return found
+
+
+def _chance(z: Floats, likely: Floats) -> float:
+    beyond = np.array([math.erfc(each / math.sqrt(2.0)) for each in z.tolist()])
+    return min(float(likely @ beyond), 1.0)
 
 
 def _compared(parameter: Estimates, vehicle: int) -> bool:

@@ -49,6 +49,13 @@ def test_one_parameter_alone_says_little_of_how_much_three_robots_differ() -> No
     assert among[0][3].chance < 0.2 * alone
 
 
+def test_the_least_size_that_alarms_is_where_its_chance_is() -> None:
+    std = np.ones(6)
+    found = odd_ones([Estimates(np.array([0.1, -0.4, 0.3, 0.0, 0.2, 7.0]), std, std)])[0][5]
+    assert found.least(found.chance) == pytest.approx(found.size, rel=0.05)
+    assert found.least(1e-3 * found.chance) > found.size
+
+
 def test_two_robots_cannot_tell_which_is_odd() -> None:
     std = np.array([1.0, 1.0, np.nan])
     assert odd_ones([Estimates(9.0 * std, std, std)]) == [{}]

@@ -104,9 +104,13 @@ def fleet(learned: Learned) -> None:
     situation = learned.situation
     assert situation.changed is not None
     robots = {f"robot-{k}": situation.robot for k in range(3)} | {"odd": situation.changed}
-    said, _ = learned.fleet("robots", robots, days=2)
+    said, results = learned.fleet("robots", robots, days=2)
     alarms = {finding["vehicle"] for finding in said.document["findings"] if finding["alarm"]}
     tests = len(said.document["findings"])
+    odd = [each for each in said.document["findings"] if each["kind"] == "odd"]
+    assert all(abs(each["size"]) > 0.8 * each["least"] for each in odd if each["alarm"])
+    page = (results / "fleet.html").read_text(encoding="utf-8")
+    assert re.search("unlike the others stands out from .* in (lon|ang|speed|curvature)", page)
     assert alarms == {"odd"}, f"{', '.join(sorted(alarms)) or 'none'} stand out in {tests} tests"
 
 
