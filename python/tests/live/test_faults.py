@@ -156,7 +156,7 @@ def test_a_full_disk_is_said_once_and_the_state_is_saved_when_there_is_room(tmp_
     place = tmp_path / "cache"
     place.write_text("in the way")  # whatever cannot be written fails alike
     transport = Scripted(list(drive()))
-    settings = Settings().model_copy(update={"live": LiveTable(cache=str(place))})
+    settings = Settings(basis="edd-2").model_copy(update={"live": LiveTable(cache=str(place))})
     built = build_node(transport, "wheel", settings, run="test")
     for _ in range(3):
         built.node.save()
