@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
@@ -24,7 +25,21 @@ SLIPWISE_TUNING(kLeast, 0.4);            // factor of the variances by correlati
 
 /// tr(A_gg B_gg).
 double block_trace(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const std::vector<Eigen::Index>& group) {
-  return a(group, group).cwiseProduct(b(group, group)).sum();
+  double sum = 0.0;
+  for (const Eigen::Index column : group) {
+    for (const Eigen::Index row : group) {
+      sum += a(row, column) * b(row, column);
+    }
+  }
+  return sum;
+}
+
+/// Noise^-1 J, by factors that are compiled elsewhere.
+Eigen::Matrix3Xd weighted_by(const Eigen::Matrix3d& noise, const Eigen::Matrix3Xd& jacobian) {
+  return solve_innovation(noise, jacobian);
+}
+Eigen::MatrixXd weighted_by(const Eigen::MatrixXd& noise, const Eigen::MatrixXd& jacobian) {
+  return Cholesky(noise).solve(jacobian);
 }
 
 }  // namespace
@@ -69,7 +84,7 @@ void ScoreCovariance::add_score(const Jacobian& jacobian, const Residual& residu
     return;
   }
   const Noise square = residual * residual.transpose() + jacobian * covariance * jacobian.transpose();
-  const Jacobian weighted = noise.llt().solve(jacobian);
+  const Jacobian weighted = weighted_by(noise, jacobian);
   const Eigen::VectorXd score = weighted.transpose() * residual;
   const double age = middle - time_;
   const double decay = age >= 0.0 ? std::exp(-age / kKernelTime) : 0.0;  // time goes back where a new run begins

@@ -2,7 +2,6 @@
 // What has to hold of what is loaded: lengths, definiteness and times of values, streams and sources.
 #include "slipwise/online/loaded_values.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -11,6 +10,7 @@
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/archive/same.hpp"
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/online/known_sources.hpp"
 #include "slipwise/online/segment_stream.hpp"
 
@@ -48,8 +48,7 @@ bool is_covariance(const Eigen::MatrixXd& matrix) {
   const double largest = matrix.cwiseAbs().maxCoeff();
   const Eigen::MatrixXd twice = matrix + matrix.transpose();
   return (matrix - matrix.transpose()).cwiseAbs().maxCoeff() <= kRounding * largest &&
-         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(twice, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >=
-             -2.0 * kRounding * largest;
+         symmetric_eigen(twice).values.minCoeff() >= -2.0 * kRounding * largest;
 }
 
 bool are_variances(const Eigen::VectorXd& values) { return possible(values) && (values.array() >= 0.0).all(); }
