@@ -36,6 +36,7 @@ Clock = Callable[[], int]  # ns
 
 POSE_RATE = 20.0  # Hz
 HORIZON = 5.0  # s
+NO_FORCES = np.zeros((0, 3))
 WANTED = {"command": 120.0, "wheel": 30.0}  # us per pose
 BINS_PER_DECADE, BAR = 5, 30  # of histograms; characters of their longest bar
 
@@ -146,7 +147,7 @@ def pushed(log: Log, input_name: str, now: Clock) -> tuple[Floats, Floats, float
             if i % 200 == 199:
                 ahead[0, 0] = t + 0.01
                 begin = now()
-                learner.predict(ahead, HORIZON, 0.0)
+                learner.predict(ahead, HORIZON, 0.0, NO_FORCES, None)
                 predictions.append(now() - begin)
         learner.events()
     us = np.array(times) / 1000.0
