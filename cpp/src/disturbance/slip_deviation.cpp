@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/filter/linear_update.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/tuning.hpp"
 
@@ -26,12 +27,9 @@ void SlipDeviation::follow(const ObservedSlip& observed) {
   const ObservedSlip::ByDeviation& h = observed.by_deviation;
   const Eigen::Vector3d innovation = observed.innovation - h * mean_;
   const Eigen::Matrix3d expected = h * covariance_ * h.transpose() + observed.noise;
-  const double nis = normalised_square(innovation, expected);
-  const Eigen::Matrix3d inflated = std::max(1.0, nis / kGate) * expected;  // an outlier moves it no further
-  const Eigen::MatrixX3d gain = kalman_gain(inflated, h * covariance_);
-  mean_ += gain * innovation;
-  covariance_ -= gain * h * covariance_;
-  covariance_ = (covariance_ + covariance_.transpose()).eval() / 2.0;
+  const double larger = std::max(1.0, normalised_square(innovation, expected) / kGate) - 1.0;
+  mean_ +=
+      linear_update(covariance_, h, observed.noise + larger * expected) * innovation;  // an outlier moves it no further
 }
 
 std::pair<SlipDeviation::State, SlipDeviation::StateMatrix> SlipDeviation::mean_over(double start, double end) const {

@@ -16,7 +16,7 @@
 namespace slipwise {
 namespace {
 
-ObservedSlip see(const MotionPosterior& posterior, const DisturbedTerms& terms, const DrivenSegment& driven) {
+ObservedSlip observed(const MotionPosterior& posterior, const DisturbedTerms& terms, const DrivenSegment& driven) {
   const auto& [inputs, segment, known_at] = driven;
   const auto at = linearize_slip(posterior.model, posterior.estimate.mean, inputs, segment);
   return {segment.start, segment.end, chart_error(segment.measured.vector(), at.predicted.vector()),
@@ -89,7 +89,7 @@ void DisturbanceFilter::learn(const MotionPosterior& posterior, const SlipNow& n
   if (terms.places.empty()) {
     return;
   }
-  const ObservedSlip next = see(posterior, terms, segment);
+  const ObservedSlip next = observed(posterior, terms, segment);
   Eigen::VectorXd scores(law_.weights.size());
   for (std::size_t i = 0; i < law_.candidates.size(); ++i) {
     const auto deviation = now.of_candidates[i].mean_over(next.start, next.end).first;
@@ -122,10 +122,17 @@ void DisturbanceFilter::follow(const MotionPosterior& posterior, SlipNow& now, c
   if (terms.places.empty()) {
     return;
   }
-  const ObservedSlip observed = see(posterior, terms, segment);
+  follow(now, observed(posterior, terms, segment));
+}
+
+void DisturbanceFilter::follow(SlipNow& now, const ObservedSlip& seen) {
   for (SlipDeviation& deviation : now.of_candidates) {
-    deviation.follow(observed);
+    deviation.follow(seen);
   }
+}
+
+ObservedSlip DisturbanceFilter::see(const MotionPosterior& posterior, const DrivenSegment& segment) {
+  return observed(posterior, disturbed_terms(posterior.model, posterior.prior_std), segment);
 }
 
 ExpectedPose DisturbanceFilter::predict(const MotionPosterior& posterior, const SlipNow& now,

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "slipwise/filter/linear_update.hpp"
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/symmetric_eigen.hpp"
@@ -36,19 +37,6 @@ struct MeasuredSegment {
   static const Jacobian& jacobian(const At& at) { return at.by_parameter; }
   const Eigen::Matrix3d& noise(const At& /*at*/) const { return covariance; }
 };
-
-/// (I - K J) P (I - K J)^T + K R K^T.
-Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobian, const Eigen::Matrix3d& noise) {
-  if (prior.size() == 0) {
-    return prior;  // the kinematic baseline has nothing to learn
-  }
-  const Jacobian spread = jacobian * prior;
-  const Eigen::Matrix3d s = spread.lazyProduct(jacobian.transpose()) + noise;
-  const Eigen::MatrixX3d gain = kalman_gain(s, spread);
-  const Eigen::MatrixXd keep = Eigen::MatrixXd::Identity(prior.rows(), prior.cols()) - gain * jacobian;
-  const Eigen::MatrixXd posterior = keep * prior * keep.transpose() + gain * noise * gain.transpose();
-  return (posterior + posterior.transpose()) / 2.0;
-}
 
 /// How far the segment's chart bends away from its linearisation over the open part of the actuator: the covariance
 /// of the second-order term along the actuator's principal directions (derivations/filter.md). The slip is
@@ -108,12 +96,12 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
                     .innovation_covariance = innovation_covariance(prior.covariance, at_prior.by_parameter, noise),
                     .nis = 0.0,
                     .weight = 1.0,
-                    .status = Status::Converged,
-                    .at = at_prior};
+                    .status = Status::Converged};
   update.nis = normalised_square(update.innovation, update.innovation_covariance);
   if (!(update.nis <= settings.gate)) {
     update.weight = 0.0;
     update.status = Status::Rejected;
+    update.at = std::move(at_prior);
     return update;
   }
   if (const double sigmas = std::sqrt(update.nis); sigmas > settings.huber) {
@@ -127,13 +115,17 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
   if (!problem.minimize(now, settings.map())) {  // nothing was learned: the prior stands
     update.weight = 0.0;
     update.status = Status::NotConverged;
+    update.at = std::move(now.at);  // at the prior still
     return update;
   }
   update.estimate.mean = now.state;
-  update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise);
+  linear_update(update.estimate.covariance, now.at.by_parameter, weighted_noise);
   if (model.actuator_size() > 0) {
     const Eigen::Matrix3d bent = second_order(model, update.estimate, inputs, segment, now.at.predicted.vector());
-    update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise + bent);
+    if (!bent.isZero(0.0)) {
+      update.estimate.covariance = prior.covariance;
+      linear_update(update.estimate.covariance, now.at.by_parameter, weighted_noise + bent);
+    }
   }
   const Eigen::ArrayXd most = (kUnknown / update.estimate.covariance.diagonal().array().sqrt()).max(1.0);
   const Eigen::VectorXd reparametrised =

@@ -119,12 +119,12 @@ Eigen::VectorXd ScoreCovariance::std_factors(const Eigen::MatrixXd& prior, const
   if (groups_.empty()) {
     return {};
   }
-  const Eigen::MatrixXd by_prior = covariance * Cholesky(prior).inverse() * covariance;
+  const Eigen::MatrixXd by_prior = Cholesky(prior).solve(covariance);
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(covariance.rows());
   for (const auto& group : groups_) {
     const double of_segments = factor(group, covariance);
     for (const Eigen::Index i : group) {
-      const double of_prior = std::clamp(by_prior(i, i) / covariance(i, i), 0.0, 1.0);
+      const double of_prior = std::clamp(covariance.col(i).dot(by_prior.col(i)) / covariance(i, i), 0.0, 1.0);
       factors[i] = std::sqrt(of_prior + (1.0 - of_prior) * of_segments);
     }
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "slipwise/filter/heavy_tails.hpp"
+#include "slipwise/filter/linear_update.hpp"
 #include "slipwise/filter/weighting.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/tuning.hpp"
@@ -61,15 +62,11 @@ void SurfaceEvidence::Under::learn(const Eigen::Vector3d& innovation,
                                    const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_state,
                                    const Eigen::Matrix3d& noise) {
   const Eigen::Vector3d left = innovation - by_state * state;
-  const Eigen::Matrix<double, 3, Eigen::Dynamic> spread = by_state * covariance;
-  const Eigen::Matrix3d open = spread * by_state.transpose();
-  const double nis = normalised_square(left, Eigen::Matrix3d(open + noise));
-  log_weight += student_log_score(nis, open + noise);
+  const Eigen::Matrix3d expected = innovation_covariance(covariance, by_state, noise);
+  const double nis = normalised_square(left, expected);
+  log_weight += student_log_score(nis, expected);
   const double heavier = std::max(1.0, (kTailDegrees + nis) / (kTailDegrees + 3.0));  // an outlier teaches less
-  const Eigen::MatrixX3d gain = kalman_gain(open + heavier * noise, spread);
-  state += gain * left;
-  covariance -= gain * spread;
-  covariance = ((covariance + covariance.transpose()) / 2.0).eval();
+  state += linear_update(covariance, by_state, heavier * noise) * left;
 }
 
 double SurfaceEvidence::log_total() const {

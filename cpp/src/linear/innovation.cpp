@@ -18,8 +18,4 @@ Eigen::Matrix3Xd solve_innovation(const Eigen::Matrix3d& s, const Eigen::Ref<con
   return s.llt().solve(b);
 }
 
-Eigen::MatrixX3d kalman_gain(const Eigen::Matrix3d& s, const Eigen::Ref<const Eigen::Matrix3Xd>& hp) {
-  return solve_innovation(s, hp).transpose();
-}
-
 }  // namespace slipwise

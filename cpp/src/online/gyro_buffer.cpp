@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/filter/linear_update.hpp"
 #include "slipwise/lie/angle.hpp"
 #include "slipwise/linear/present.hpp"
 #include "slipwise/linear/same_stamp.hpp"
@@ -35,9 +36,10 @@ double at(const YawRate& first, const YawRate& second, double t) {
 double GyroBuffer::bias_std() const { return std::sqrt(variance_); }
 
 void GyroBuffer::learn_bias(double measured, double variance) {
-  const double gain = variance_ / (variance_ + variance);
-  bias_ += gain * (measured - bias_);
-  variance_ *= 1.0 - gain;
+  using Scalar = Eigen::Matrix<double, 1, 1>;
+  Scalar known(variance_);
+  bias_ += linear_update(known, Scalar::Identity(), Scalar(variance)).value() * (measured - bias_);
+  variance_ = known.value();
 }
 
 void GyroBuffer::see_inputs(double t, const InputBuffer& inputs, double still_speed) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "slipwise/filter/linear_update.hpp"
 #include "slipwise/lie/angle.hpp"
 #include "slipwise/linear/innovation.hpp"
 
@@ -165,11 +166,9 @@ void PoseFilter::correct(State& state, const MeasuredPose& pose, const PoseNoise
   Eigen::Vector3d innovation = vector_pose(pose).vector() - state.pose.vector();
   innovation.z() = wrap_angle(innovation.z());
   const Eigen::Matrix3d r = noise.variances(pose.std_ratio).asDiagonal();
-  const Eigen::Matrix3d gain = kalman_gain(state.covariance + r, state.covariance);
-  const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - gain;
+  const Eigen::Matrix3d gain = linear_update(state.covariance, Eigen::Matrix3d(Eigen::Matrix3d::Identity()), r);
   state.pose = Pose2::from_vector(state.pose.vector() + gain * innovation);
-  state.covariance = (left * state.covariance * left.transpose() + gain * r * gain.transpose()).eval();
-  state.with_lasting = (left * state.with_lasting).eval();
+  state.with_lasting -= (gain * state.with_lasting).eval();
 }
 
 /// The motion since the last pose, as measured, minus what was expected.

@@ -24,16 +24,31 @@ const SlipNow& RecentSlip::after(const DisturbanceFilter& disturbance,
     std::rotate(found_.begin(), place, std::next(place));
     return found_.front().slip;
   }
-  Found found{.motion = motion, .ends = {}, .slip = disturbance.now(*motion, {})};
-  for (const DrivenSegment* segment : segments) {
-    disturbance.follow(*motion, found.slip, *segment);
-    found.ends.push_back(end_of(segment));
+  Found found{.motion = motion, .ends = {}, .seen = {}, .slip = disturbance.now(*motion, {})};
+  if (!found.slip.of_candidates.empty()) {
+    std::ranges::transform(segments, std::back_inserter(found.seen),
+                           [&](const DrivenSegment* segment) { return seen(motion, *segment); });
   }
+  for (const auto& each : found.seen) {
+    DisturbanceFilter::follow(found.slip, *each);
+  }
+  std::ranges::transform(segments, std::back_inserter(found.ends), end_of);
   found_.push_front(std::move(found));
   if (found_.size() > kKept) {
     found_.pop_back();
   }
   return found_.front().slip;
+}
+
+std::shared_ptr<const ObservedSlip> RecentSlip::seen(const std::shared_ptr<const MotionPosterior>& motion,
+                                                     const DrivenSegment& segment) const {
+  for (const Found& each : found_) {
+    const auto place = std::ranges::find(each.ends, segment.segment.end);
+    if (each.motion == motion && place != each.ends.end()) {
+      return each.seen[static_cast<std::size_t>(place - each.ends.begin())];
+    }
+  }
+  return std::make_shared<const ObservedSlip>(DisturbanceFilter::see(*motion, segment));
 }
 
 }  // namespace slipwise

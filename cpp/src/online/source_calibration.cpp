@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "slipwise/filter/causal_filter.hpp"
+#include "slipwise/filter/linear_update.hpp"
 #include "slipwise/filter/map_update.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/tuning.hpp"
@@ -103,12 +104,8 @@ void SourceCalibration::learn(const MotionPosterior& posterior, const DrivenSegm
   if (!problem.minimize(now, settings.map())) {
     return;
   }
-  const Eigen::MatrixXd spread = now.at.jacobian * estimate_.covariance;
-  const Eigen::Matrix3d s = innovation_covariance(estimate_.covariance, now.at.jacobian, seen.covariance);
-  const Eigen::MatrixXd less = spread.transpose() * solve_innovation(s, spread);
   estimate_.mean = now.state;
-  estimate_.covariance -= (less + less.transpose()) / 2.0;
-  estimate_.covariance.diagonal() = estimate_.covariance.diagonal().cwiseMax(0.0);
+  linear_update(estimate_.covariance, now.at.jacobian, seen.covariance);
 }
 
 Eigen::Vector3d SourceCalibration::open(const MotionPosterior& posterior, const DrivenSegment& driven) const {

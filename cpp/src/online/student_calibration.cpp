@@ -55,12 +55,16 @@ double crossing(const Inside& inside, double fraction, const Axis& axis) {
 
 /// What depends on the grid alone.
 struct Tables {
-  Eigen::VectorXd prior;              ///< [scales * dofs] logarithms
-  Eigen::MatrixXd inside;             ///< [scales * dofs, distances] fraction within each distance
-  Eigen::VectorXd dof, inner, outer;  ///< [fine dofs] logarithms of the squared sizes of both ellipsoids
+  Eigen::VectorXd prior;                          ///< [scales * dofs] logarithms
+  Eigen::VectorXd constant, power, per_distance;  ///< [scales * dofs] of the log density of an error
+  Eigen::MatrixXd inside;                         ///< [scales * dofs, distances] fraction within each distance
+  Eigen::VectorXd dof, inner, outer;              ///< [fine dofs] logarithms of the squared sizes of both ellipsoids
 
   Tables()
       : prior(kScales * kDofCount),
+        constant(kScales * kDofCount),
+        power(kScales * kDofCount),
+        per_distance(kScales * kDofCount),
         inside(kScales * kDofCount, kDistances),
         dof(kFineDofs),
         inner(kFineDofs),
@@ -72,10 +76,15 @@ struct Tables {
         const double logarithm = log_distance(0) - log_scale(0) + kStep * static_cast<double>(q + 1 - kScales);
         of_quotient[q] = fraction_inside((nu - 2.0) / nu * std::exp(logarithm), nu);
       }
+      const double of_dof = std::lgamma((nu + 3.0) / 2.0) - std::lgamma(nu / 2.0) - 1.5 * std::log(nu);
       const double away = (std::log(nu) - std::log(kPriorDof)) / kPriorDofStd;
       for (Eigen::Index s = 0; s < kScales; ++s) {
-        prior[s * kDofCount + d] = -0.5 * (std::pow(log_scale(s) / kPriorScaleStd, 2) + away * away);
-        inside.row(s * kDofCount + d) = of_quotient.segment(kScales - 1 - s, kDistances);
+        const Eigen::Index place = s * kDofCount + d;
+        constant[place] = of_dof - 1.5 * log_scale(s);
+        power[place] = 0.5 * (nu + 3.0);
+        per_distance[place] = std::exp(-log_scale(s)) / nu;
+        prior[place] = -0.5 * (std::pow(log_scale(s) / kPriorScaleStd, 2) + away * away);
+        inside.row(place) = of_quotient.segment(kScales - 1 - s, kDistances);
       }
     }
     const double ratio = std::log(kMostDof / kLeastDof) / static_cast<double>(kFineDofs - 1);
@@ -108,30 +117,41 @@ double interpolated(double x, const Eigen::VectorXd& rising, const Eigen::Vector
 
 /// Log density of an error over the grid, up to a constant.
 Eigen::VectorXd log_likelihood(double squared) {
-  Eigen::VectorXd density(kScales * kDofCount);
-  std::array<double, kDofs.size()> constant{};
-  for (std::size_t d = 0; d < kDofs.size(); ++d) {
-    constant[d] = std::lgamma((kDofs[d] + 3.0) / 2.0) - std::lgamma(kDofs[d] / 2.0) - 1.5 * std::log(kDofs[d]);
-  }
-  for (Eigen::Index s = 0; s < kScales; ++s) {
-    const double distance = std::min(squared, kFarthest) * std::exp(-log_scale(s));
-    for (Eigen::Index d = 0; d < kDofCount; ++d) {
-      const auto i = static_cast<std::size_t>(d);
-      density[s * kDofCount + d] =
-          constant[i] - 0.5 * (kDofs[i] + 3.0) * std::log1p(distance / kDofs[i]) - 1.5 * log_scale(s);
-    }
-  }
-  return density;
+  const Tables& known = tables();
+  return known.constant.array() -
+         known.power.array() * (1.0 + std::min(squared, kFarthest) * known.per_distance.array()).log();
 }
 
-Eigen::VectorXd normalised(const Eigen::VectorXd& logarithms) {
-  const Eigen::VectorXd weights = (logarithms.array() - logarithms.maxCoeff()).exp();
-  return weights / weights.sum();
+constexpr double kNegligible =
+    40.0;  // less than the greatest logarithm by so much, all of a grid add less than rounding
+
+/// Weights of the scales that count: those between are theirs too, for logarithms of densities are concave in that of
+/// the scale.
+GridWeights weights_of(const Eigen::VectorXd& logarithms) {
+  const double most = logarithms.maxCoeff();
+  const auto counts = [&](Eigen::Index place) { return logarithms[place] >= most - kNegligible; };
+  Eigen::Index first = 0;
+  Eigen::Index end = logarithms.size();
+  while (first + 1 < end && !counts(first)) {
+    ++first;
+  }
+  while (end > first + 1 && !counts(end - 1)) {
+    --end;
+  }
+  GridWeights found{
+      .first = first, .weights = (logarithms.segment(first, end - first).array() - most).exp(), .log_sum = 0.0};
+  const double sum = found.weights.sum();
+  found.weights /= sum;
+  found.log_sum = most + std::log(sum);
+  return found;
 }
 
 }  // namespace
 
-StudentCalibration::StudentCalibration() { evidence_.fill(Eigen::VectorXd::Zero(kScales * kDofCount)); }
+StudentCalibration::StudentCalibration() {
+  evidence_.fill(Eigen::VectorXd::Zero(kScales * kDofCount));
+  weigh();
+}
 
 void StudentCalibration::check_sizes() const {
   if (std::ranges::any_of(evidence_, [](const auto& each) { return each.size() != kScales * kDofCount; })) {
@@ -139,23 +159,29 @@ void StudentCalibration::check_sizes() const {
   }
 }
 
+void StudentCalibration::weigh() {
+  for (std::size_t k = 0; k < kForgettingTimes; ++k) {
+    posterior_[k] = weights_of(tables().prior + evidence_[k]);
+  }
+}
+
 void StudentCalibration::learn(double squared) {
   const Eigen::VectorXd step = log_likelihood(squared);
-  const double most = step.maxCoeff();
-  const Eigen::ArrayXd density = (step.array() - most).exp();
   for (std::size_t k = 0; k < kForgettingTimes; ++k) {
-    predicted_[k] += std::log((normalised(tables().prior + evidence_[k]).array() * density).sum()) + most;
+    predicted_[k] += weights_of(tables().prior + evidence_[k] + step).log_sum - posterior_[k].log_sum;
     evidence_[k] = (1.0 - 1.0 / kForgetting[k]) * evidence_[k] + step;
   }
+  weigh();
 }
 
 /// Where the mixture's tails are heavier than the least degrees of freedom allow, the larger ellipsoid is kept.
 StudentT StudentCalibration::fitted() const {
   const Tables& known = tables();
-  const Eigen::VectorXd weights = normalised(Eigen::Map<const Eigen::Vector4d>(predicted_.data()));
+  const GridWeights of_times = weights_of(Eigen::Map<const Eigen::Vector4d>(predicted_.data()));
   Eigen::VectorXd mixed = Eigen::VectorXd::Zero(known.prior.size());
-  for (std::size_t k = 0; k < kForgettingTimes; ++k) {
-    mixed += weights[static_cast<Eigen::Index>(k)] * normalised(known.prior + evidence_[k]);
+  for (Eigen::Index i = 0; i < of_times.weights.size(); ++i) {
+    const GridWeights& each = posterior_[static_cast<std::size_t>(of_times.first + i)];
+    mixed.segment(each.first, each.weights.size()) += of_times.weights[i] * each.weights;
   }
   const auto inside = [&](Eigen::Index distance) { return known.inside.col(distance).dot(mixed); };
   const Axis axis{.first = log_distance(0), .step = kStep, .count = kDistances};

@@ -10,25 +10,29 @@
 namespace slipwise {
 namespace {
 
-/// Derivative of the path's last chart by the tangent of step k: Phi blkdiag(R, 1) E.
-Eigen::Matrix3d end_by_tangent(const SegmentPath& path, std::size_t k) {
-  Eigen::Matrix3d world = chart_jacobian(path.tangents[k]);
-  world.topRows<2>() = rotation(path.poses[k].theta) * world.topRows<2>().eval();
-  return transition(path.poses[k + 1], path.poses.back()) * world;
-}
-
-/// How steps move the chart that a segment's measurement is compared with.
+/// How steps move the chart that a segment's measurement is compared with, one after the other. The heading's rotation
+/// is carried along, so that a step costs the trigonometry of its turn alone.
 class ChartBySteps {
  public:
   explicit ChartBySteps(const SegmentPath& path) : path_(path) {
     if (path.course) {
       by_position_ = course_by_position(path.course_positions(), *path.course);
+      for (std::size_t i = 0; i < kCoursePoints; ++i) {
+        by_robot_[i] = sensor_by_robot(path.poses[path.course->at[i]], path.sensor);
+      }
     }
   }
 
-  /// Derivative by the tangent of step k: of the robot's chart at the end, or between positions of the course's.
-  Eigen::Matrix3d by_tangent(std::size_t k) const {
-    return path_.course ? course_by_tangent(k) : end_by_tangent(path_, k);
+  /// Derivative by the tangent of the next step: of the robot's chart at the end, or between positions of the course's.
+  Eigen::Matrix3d by_next_tangent() {
+    const Eigen::Vector3d& tangent = path_.tangents[next_];
+    const auto arc = arc_functions(tangent.z());
+    Eigen::Matrix3d world = chart_jacobian(tangent, arc);  // blkdiag(R, 1) E
+    world.topRows<2>() = (heading_ * world.topRows<2>()).eval();
+    const Eigen::Vector2d ahead = heading_ * Eigen::Vector2d(arc.cos_turn, arc.sin_turn);
+    heading_ << ahead.x(), -ahead.y(), ahead.y(), ahead.x();
+    ++next_;
+    return path_.course ? course_by_world(world) : transition(path_.poses[next_], path_.poses.back()) * world;
   }
   /// What leads from there to the chart of the measurement.
   Eigen::Matrix3d observed() const {
@@ -37,17 +41,14 @@ class ChartBySteps {
   }
 
  private:
-  Eigen::Matrix3d course_by_tangent(std::size_t k) const {
-    Eigen::Matrix3d world = chart_jacobian(path_.tangents[k]);
-    world.topRows<2>() = rotation(path_.poses[k].theta) * world.topRows<2>().eval();
+  Eigen::Matrix3d course_by_world(const Eigen::Matrix3d& world) const {
     const CoursePlaces& course = present(path_.course);
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < kCoursePoints; ++i) {
       const std::size_t place = course.at[i];
-      if (place > k) {
+      if (place >= next_) {
         const Pose2& pose = path_.poses[place];
-        const Eigen::Matrix3d moved =
-            sensor_by_robot(pose, path_.sensor) * transition(path_.poses[k + 1], pose) * world;
+        const Eigen::Matrix3d moved = by_robot_[i] * transition(path_.poses[next_], pose) * world;
         sum += by_position_[i] * moved.topRows<2>();
         if (course.gyro_std && (i == kStart || i == kEnd)) {
           sum.row(2) += (i == kEnd ? 1.0 : -1.0) * moved.row(2);
@@ -59,6 +60,9 @@ class ChartBySteps {
 
   const SegmentPath& path_;
   ByPosition by_position_;
+  std::array<Eigen::Matrix3d, kCoursePoints> by_robot_;  ///< of the sensor's positions at the course's points
+  std::size_t next_ = 0;
+  Eigen::Matrix2d heading_ = Eigen::Matrix2d::Identity();
 };
 
 /// H of derivations/uncertainty.md: a start measured too far left and turned too far left moves the end right and back.
@@ -85,11 +89,11 @@ std::array<double, 3> motion_of(const ActuatorStep& step) {
 }  // namespace
 
 Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& noise) {
-  const ChartBySteps chart(path);
+  ChartBySteps chart(path);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d constant = Eigen::Matrix3d::Zero();  // column c: effect of a slip that is the same fraction all along
   for (std::size_t k = 0; k < path.tangents.size(); ++k) {
-    const Eigen::Matrix3d by_tangent = chart.by_tangent(k);
+    const Eigen::Matrix3d by_tangent = chart.by_next_tangent();
     const std::array<double, 3> motion = motion_of(path.drive[k]);
     const double moving_time = motion[0] > 0.0 ? path.drive[k].duration : 0.0;
     for (Eigen::Index c = 0; c < 3; ++c) {
@@ -105,10 +109,10 @@ Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& nois
 }
 
 Eigen::Matrix3d constant_slip(const SegmentPath& path, const MotionNoise& noise) {
-  const ChartBySteps chart(path);
+  ChartBySteps chart(path);
   Eigen::Matrix3d constant = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < path.tangents.size(); ++k) {
-    const Eigen::Matrix3d by_tangent = chart.by_tangent(k);
+    const Eigen::Matrix3d by_tangent = chart.by_next_tangent();
     const std::array<double, 3> motion = motion_of(path.drive[k]);
     for (Eigen::Index c = 0; c < 3; ++c) {
       const auto i = static_cast<std::size_t>(c);

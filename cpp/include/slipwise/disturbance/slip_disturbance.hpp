@@ -68,6 +68,9 @@ class DisturbanceFilter {
   /// Adds what one more segment says, which follows all that `now` comes from.
   /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
   void follow(const MotionPosterior& posterior, SlipNow& now, const DrivenSegment& segment) const;
+  /// The same of what `see` makes of the segment, under the posterior that `now` belongs to.
+  static void follow(SlipNow& now, const ObservedSlip& seen);
+  static ObservedSlip see(const MotionPosterior& posterior, const DrivenSegment& segment);
   /// Predicts `segment`, which starts no earlier than the last segment that `now` comes from ended.
   /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
   ExpectedPose predict(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) const;

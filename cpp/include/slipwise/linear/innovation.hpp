@@ -31,7 +31,4 @@ auto innovation_covariance(const Eigen::MatrixXd& prior, const Eigen::MatrixBase
   return s;
 }
 
-/// (S^-1 H P)^T, the Kalman gain, of H P.
-Eigen::MatrixX3d kalman_gain(const Eigen::Matrix3d& s, const Eigen::Ref<const Eigen::Matrix3Xd>& hp);
-
 }  // namespace slipwise

@@ -27,9 +27,14 @@ class RecentSlip {
  private:
   struct Found {
     std::shared_ptr<const MotionPosterior> motion;
-    std::vector<double> ends;  ///< of the segments [s]
+    std::vector<double> ends;                               ///< of the segments [s]
+    std::vector<std::shared_ptr<const ObservedSlip>> seen;  ///< of each of them
     SlipNow slip;
   };
+
+  /// What a segment shows under the motion, as it was found for other segments beside it.
+  std::shared_ptr<const ObservedSlip> seen(const std::shared_ptr<const MotionPosterior>& motion,
+                                           const DrivenSegment& segment) const;
 
   std::deque<Found> found_;  ///< the last one that was asked for comes first
 };

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <type_traits>
 
 namespace slipwise {
 
@@ -12,6 +13,13 @@ namespace slipwise {
 struct StudentT {
   double inflation;  ///< factor of the covariance
   double dof;        ///< degrees of freedom
+};
+
+/// Weights over a part of a grid, beside which the rest is negligible; they sum to 1.
+struct GridWeights {
+  Eigen::Index first = 0;
+  Eigen::VectorXd weights;
+  double log_sum = 0.0;  ///< logarithm of the sum before that was so
 };
 
 /// Fits a Student t to the errors of predictions, one after another. The posterior over a grid of variance scale and
@@ -30,15 +38,21 @@ class StudentCalibration {
   static void archive(Self& self, Archive& a) {
     a(self.evidence_, self.predicted_);
     self.check_sizes();
+    if constexpr (!std::is_const_v<Self>) {
+      self.weigh();
+    }
   }
 
  private:
   /// \throws std::invalid_argument unless there is evidence for each place of the grid.
   void check_sizes() const;
+  /// Finds the posteriors of the evidence, which are not saved.
+  void weigh();
 
   static constexpr std::size_t kForgettingTimes = 4;
   std::array<Eigen::VectorXd, kForgettingTimes> evidence_;  ///< over the grid, logarithms
-  std::array<double, kForgettingTimes> predicted_{};        ///< log densities of all errors so far
+  std::array<GridWeights, kForgettingTimes> posterior_;
+  std::array<double, kForgettingTimes> predicted_{};  ///< log densities of all errors so far
 };
 
 }  // namespace slipwise

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "slipwise/filter/linear_update.hpp"
 #include "slipwise/filter/prior.hpp"
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
@@ -101,16 +102,12 @@ void DelayedState::advance_at(const Point& point, const InputHistory& inputs, co
   time_ = leg.end;
 }
 
-/// Joseph form of a direct measurement of the pose that stands at `row`.
+/// By a direct measurement of the pose that stands at `row`.
 void DelayedState::update(Eigen::Index row, const Pose2& measured, const Eigen::Matrix3d& noise) {
-  const Eigen::Index n = joint_.mean.size();
-  const Eigen::Matrix3d s = joint_.covariance.block<3, 3>(row, row) + noise;
-  const Eigen::MatrixX3d gain = kalman_gain(s, joint_.covariance.middleRows<3>(row));
-  joint_.mean += gain * (measured.vector() - joint_.mean.segment<3>(row));
-  Eigen::MatrixXd keep = Eigen::MatrixXd::Identity(n, n);
-  keep.middleCols<3>(row) -= gain;
-  const Eigen::MatrixXd posterior = keep * joint_.covariance * keep.transpose() + gain * noise * gain.transpose();
-  joint_.covariance = (posterior + posterior.transpose()) / 2.0;
+  const Eigen::Vector3d innovation = measured.vector() - joint_.mean.segment<3>(row);
+  Eigen::Matrix3Xd by_state = Eigen::Matrix3Xd::Zero(3, joint_.mean.size());
+  by_state.middleCols<3>(row).setIdentity();
+  joint_.mean += linear_update(joint_.covariance, by_state, noise) * innovation;
 }
 
 void DelayedState::correct_delayed(const Pose2& measured) { update(model_.size() + 3, measured, pose_noise()); }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "slipwise/filter/linear_update.hpp"
 #include "slipwise/filter/prior.hpp"
 #include "slipwise/linear/innovation.hpp"
 
@@ -28,14 +29,11 @@ IekfUpdate EkfThesis::learn(const InputHistory& inputs, const Segment& segment) 
   // 3. The gain, with J of (6.7), whose heading coupling is missing (erratum), or the exact one.
   const auto jacobian = segment_jacobian(settings_.jacobian, model_, at, segment);
   const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, noise_, Eigen::Vector3d::Ones());
-  const Eigen::Matrix<double, 3, Eigen::Dynamic> spread = jacobian * covariance;
-  const Eigen::Matrix3d s = spread * jacobian.transpose() + noise;
-  const Eigen::MatrixX3d gain = kalman_gain(s, spread);
+  const Eigen::Matrix3d s = innovation_covariance(covariance, jacobian, noise);
   // 4. and 5. No iteration, no gate.
   const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
-  estimate_.mean += gain * residual;
-  covariance -= gain * spread;
-  estimate_.covariance = (covariance + covariance.transpose()) / 2.0;
+  estimate_.mean += linear_update(covariance, jacobian, noise) * residual;
+  estimate_.covariance = covariance;
   return {.estimate = estimate_,
           .innovation = residual,
           .innovation_covariance = s,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "slipwise/filter/linear_update.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
@@ -66,13 +67,10 @@ SlipRatioUpdate SlipRatioFilter::learn(const InputHistory& wheels, const Segment
     update.weight = settings_.huber / sigmas;
   }
   const Eigen::Matrix3d weighted = noise / update.weight;
-  const Eigen::Matrix3d s = h * prior * h.transpose() + weighted;
-  const Eigen::Matrix3d gain = kalman_gain(s, h * prior);
-  const Eigen::Matrix3d keep = Eigen::Matrix3d::Identity() - gain * h;
-  const Eigen::Matrix3d posterior = keep * prior * keep.transpose() + gain * weighted * gain.transpose();
-  const Eigen::Vector3d mean = estimate_.mean + gain * update.innovation;
+  Eigen::Matrix3d posterior = prior;
+  const Eigen::Vector3d mean = estimate_.mean + linear_update(posterior, h, weighted) * update.innovation;
   estimate_.mean = bounded(SlipRatios::from_vector(mean)).vector();
-  estimate_.covariance = (posterior + posterior.transpose()) / 2.0;
+  estimate_.covariance = posterior;
   return update;
 }
 

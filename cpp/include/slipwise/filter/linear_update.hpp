@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a linear measurement does to a covariance: the only code that touches one by a measurement
+// (derivations/filter.md).
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace slipwise {
+
+/// Gain of a measurement z = H x + noise of covariance R, for a state of covariance P; P becomes what it is afterwards,
+/// in Joseph's form (I - K H) P (I - K H)^T + K R K^T: symmetric, and of positive variances whatever is rounded.
+template <class Matrix, class ByState, class Noise>
+auto linear_update(Eigen::PlainObjectBase<Matrix>& covariance, const Eigen::MatrixBase<ByState>& by_state,
+                   const Eigen::MatrixBase<Noise>& noise) {
+  constexpr int kMeasured = ByState::RowsAtCompileTime;
+  constexpr int kStates = Matrix::RowsAtCompileTime;
+  constexpr int kMostStates = Matrix::MaxRowsAtCompileTime;
+  static_assert(kMeasured > 0 && kMeasured <= 3);
+  using Gain = Eigen::Matrix<double, kStates, kMeasured, kStates == 1 ? Eigen::RowMajor : Eigen::ColMajor, kMostStates,
+                             kMeasured>;
+  const Eigen::Matrix<double, kMeasured, kStates, kMeasured == 1 ? Eigen::RowMajor : Eigen::ColMajor, kMeasured,
+                      kMostStates>
+      spread = by_state * covariance;
+  const Eigen::Matrix<double, kMeasured, kMeasured> innovation = spread.lazyProduct(by_state.transpose()) + noise;
+  Gain gain = innovation.llt().solve(spread).transpose();
+  if (covariance.size() == 0) {
+    return gain;  // the kinematic baseline has nothing to learn
+  }
+  const Matrix keep = Matrix::Identity(covariance.rows(), covariance.cols()) - gain * by_state;
+  const Matrix posterior = keep * covariance * keep.transpose() + gain * noise * gain.transpose();
+  covariance = (posterior + posterior.transpose()) / 2.0;
+  return gain;
+}
+
+}  // namespace slipwise
