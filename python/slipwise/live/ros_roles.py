@@ -109,7 +109,6 @@ def first_poses(wire: RosWire, roles: Roles, say: Callable[[str], None]) -> Firs
         kind = POSE_VALUES[roles.pose.type]
         angles = _first_angles(wire, roles.pose, lambda message: kind(message)[3:7])
     angles = angles or []
-    angles = angles or []
     positions = bool(angles) and not any(angles) and not fixes
     if positions:
         say(f"the quaternions of {roles.pose.name} are no rotations: positions only")

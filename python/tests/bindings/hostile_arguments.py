@@ -30,6 +30,7 @@ ANY_LENGTH = {
     "even_samples values",
     "squared_distances first",
     "squared_distances second",
+    "MotionLearner.predict forces",
     "KernelExpert.__init__ weights",
     "KernelExpert.probabilities features",
     "KernelExpert.newness features",

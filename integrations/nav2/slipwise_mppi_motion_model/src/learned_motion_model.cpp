@@ -42,7 +42,6 @@ class LearnedMotionModel : public mppi::MotionModel {
   static slipwise::RolloutProgram compiled(double period) {
     const std::vector<std::string> lon{SLIPWISE_TERMS_LON}, lat{SLIPWISE_TERMS_LAT}, ang{SLIPWISE_TERMS_ANG};
     const slipwise::MotionModel model({"learned", lon, lat, ang}, {.dynamics = SLIPWISE_HAS_DYNAMICS,
-                                                                   .clock_offset = SLIPWISE_HAS_CLOCK_OFFSET,
                                                                    .response = SLIPWISE_HAS_RESPONSE,
                                                                    .delays = SLIPWISE_HAS_DELAYS});
     const std::vector<double> values{SLIPWISE_PARAMETERS};
