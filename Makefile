@@ -17,7 +17,7 @@ export PYTHONNOUSERSITE := 1
 export PIP_USER := 0
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 # Python compiles modules as they are imported: few of those that are installed.
-export PIP_NO_COMPILE := 1
+export PIP_COMPILE := 0
 export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 unexport PYTHONPATH PYTHONHOME CONDA_PREFIX PYTHONDONTWRITEBYTECODE  # a test module is compiled once
 
