@@ -20,7 +20,7 @@ BUILD = ROOT / "build/package"
 PIP = (sys.executable, "-m", "pip", "install")
 NINJA_STEP = re.compile(r"^\[(\d+)/(\d+)\]")
 PIP_STEP = re.compile(r"^(?:Collecting|Downloading|Installing collected packages) *:? *([\w.-]*)")
-PROCESSOR_SECONDS = 340  # of the first compilation and installation by GCC 12, without a cache of a compiler
+PROCESSOR_SECONDS = 360  # of the first compilation and installation by GCC 12, without a cache of a compiler
 EVERY = 20.0  # s between lines where nobody watches; a terminal has one line that changes
 
 
