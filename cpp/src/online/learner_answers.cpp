@@ -163,10 +163,10 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   }
   const SlipNow slip = slip_at_newest(knowledge, limits);
   const MotionPosterior motion = of_base_link(*aged(knowledge, ahead.segment));
-  const ForceBuffer forces = stream_.forces_ahead(counted(known.forces));
-  const auto beginnings = known.forces.empty() ? linearize_beginnings(motion.model, motion.estimate.mean, ahead.inputs,
-                                                                      ahead.segment, kPathPoses)
-                                               : pushed_beginnings(motion, ahead, forces);
+  const auto beginnings =
+      known.forces.empty()
+          ? linearize_beginnings(motion.model, motion.estimate.mean, ahead.inputs, ahead.segment, kPathPoses)
+          : pushed_beginnings(motion, ahead, stream_.forces_ahead(counted(known.forces)));
   PredictedPath path{.start = stream_.newest(),
                      .t = {},
                      .poses = {},

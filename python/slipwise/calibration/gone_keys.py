@@ -8,7 +8,6 @@ from typing import Any
 
 #: Keys that stand elsewhere now, or that another key says.
 MOVED = {
-    "vehicle.track": "log.wheel_separation",
     "vehicle.wheel_separation": "log.wheel_separation",
     "live.host": "live.address",
 }
@@ -45,7 +44,7 @@ GONE = {
     "live.apply.within": "gone: 1 prior standard deviation beyond what is certain",
     "live.apply.rate": "gone: 0.01 prior standard deviations a second",
     "learn_clock_offset": _CONSTANT,
-    **{f"prior.{name}": _CONSTANT for name in ("clock_offset_std", "time_constant", "lag", "delay")},
+    **{f"prior.{name}": _CONSTANT for name in ("clock_offset_std", "time_constant", "delay")},
     **{f"noise.{name}": _CONSTANT for name in (
         "psd_time", "psd_motion", "pose_std_xy", "pose_std_yaw", "adapt",
     )},

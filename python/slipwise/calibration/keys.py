@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel, Field
 from pydantic.fields import FieldInfo
 
-_NO_DEFAULT = "example"
+_EXAMPLE = "example"
 
 
 class Key(NamedTuple):
@@ -40,7 +40,7 @@ def key(default: Any, text: str, *, example: str = "", **bounds: Any) -> Any:
         example: a value as TOML has it.
         bounds: as pydantic's Field takes them.
     """
-    return Field(default, description=text, json_schema_extra={_NO_DEFAULT: example}, **bounds)
+    return Field(default, description=text, json_schema_extra={_EXAMPLE: example}, **bounds)
 
 
 def keys_of(model: type[BaseModel], table: str = "") -> Iterator[Key]:
@@ -55,20 +55,18 @@ def keys_of(model: type[BaseModel], table: str = "") -> Iterator[Key]:
 
 def _example(about: FieldInfo) -> str:
     extra = about.json_schema_extra
-    return str(extra.get(_NO_DEFAULT, "")) if isinstance(extra, dict) else ""
+    return str(extra.get(_EXAMPLE, "")) if isinstance(extra, dict) else ""
 
 
-def changed_or_key(content: Mapping[str, Any], default: Mapping[str, Any], keys: set[str]) -> dict[str, Any]:
+def changed_or_key(
+    content: Mapping[str, Any], default: Mapping[str, Any], keys: set[str], table: str = ""
+) -> dict[str, Any]:
     """Return nested tables without constants that are as they are by default."""
-    return _kept(content, default, keys, "")
-
-
-def _kept(content: Mapping[str, Any], default: Mapping[str, Any], keys: set[str], at: str) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for name, value in content.items():
-        path, before = f"{at}.{name}".strip("."), default.get(name)
+        path, before = f"{table}.{name}".strip("."), default.get(name)
         if isinstance(value, dict) and path not in keys and isinstance(before, dict):
-            inner = _kept(value, before, keys, path)
+            inner = changed_or_key(value, before, keys, path)
             found |= {name: inner} if inner else {}
         elif path in keys or value != before:
             found[name] = value

@@ -211,10 +211,7 @@ def make_settings(content: dict[str, Any], *, where: str = "settings", saved: bo
     present, news = _with_new_keys(content)
     if not saved:
         _note(where, news)
-    try:
-        return Settings.model_validate(present)
-    except ValidationError as problem:
-        raise SettingsError(first_problem(problem), where=where, advice=_SEE) from problem
+    return _validated(present, where)
 
 
 def user_settings(content: dict[str, Any], *, where: str) -> Settings:
@@ -223,11 +220,19 @@ def user_settings(content: dict[str, Any], *, where: str) -> Settings:
     Raises:
         SettingsError: a key is unknown or a value is wrong.
     """
-    present, _ = _with_new_keys(content)
-    kept = [text for path, text in notes_of_gone(present) if _known(Settings, path)]
-    settings = make_settings(content, where=where)
+    present, news = _with_new_keys(content)
+    _note(where, news)
+    settings = _validated(present, where)
+    kept = [text for _, text in notes_of_gone(present)]  # those that nothing reads are out
     _note(where, [*kept, "read in this release once more"] if kept else [])
     return settings
+
+
+def _validated(present: dict[str, Any], where: str) -> Settings:
+    try:
+        return Settings.model_validate(present)
+    except ValidationError as problem:
+        raise SettingsError(first_problem(problem), where=where, advice=_SEE) from problem
 
 
 def users_dump(settings: Settings) -> dict[str, Any]:

@@ -35,9 +35,7 @@ class Handover:
         self._rules, self._said = rules, said
         self._reached: set[str] = set()  # targets that got something
         self._sent: set[tuple[str, str]] = set()  # targets and names of parameters that nodes got
-        self._options = ExportOptions(
-            ros_distro=os.environ.get("ROS_DISTRO") or None,
-        )
+        self._options = ExportOptions(ros_distro=os.environ.get("ROS_DISTRO") or None)
 
     def withdraw(self, t: float, model: Model, why: str) -> list[AppliedParameters]:
         """Write the start values into the files, with a word why; return the parameters for running nodes.

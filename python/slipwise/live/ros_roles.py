@@ -100,19 +100,18 @@ def first_poses(wire: RosWire, roles: Roles, say: Callable[[str], None]) -> Firs
         roles: that were chosen.
         say: called with what was found.
     """
-    fixes = roles.pose is not None and roles.pose.type == NAV_SAT_FIX
-    if roles.pose is None or (fixes and roles.imu is None):
+    if roles.pose is None:
         return FirstPoses()
-    if fixes and roles.imu is not None:
-        angles = _first_angles(wire, roles.imu, IMU_VALUES[IMU])
+    if roles.pose.type == NAV_SAT_FIX:
+        angles = _first_angles(wire, roles.imu, IMU_VALUES[IMU]) if roles.imu is not None else None
+        positions = False
     else:
         kind = POSE_VALUES[roles.pose.type]
         angles = _first_angles(wire, roles.pose, lambda message: kind(message)[3:7])
-    angles = angles or []
-    positions = bool(angles) and not any(angles) and not fixes
+        positions = bool(angles) and not any(angles or ())
     if positions:
         say(f"the quaternions of {roles.pose.name} are no rotations: positions only")
-    return FirstPoses(positions, any(each and (each[0] or each[1]) for each in angles))
+    return FirstPoses(positions, any(each and (each[0] or each[1]) for each in angles or ()))
 
 
 def _has_rotation(wire: RosWire, topic: Topic, values: Callable[[Any], Values]) -> bool | None:

@@ -50,10 +50,15 @@ def staged(url: str, most: float | None = None) -> Path:
     Raises:
         LogError: a package is missing, the file cannot be fetched, is too large or comes cut off.
     """
-    asked = url, int((MOST_FETCHED if most is None else most) * 1024 * 1024)
+    asked = _asked(url, most)
     if asked not in _copies:
         _copies[asked] = _fetched(*asked)
     return _copies[asked][1]
+
+
+def _asked(url: str, most: float | None = None) -> tuple[str, int]:
+    """Return the address, and how many bytes the file may have."""
+    return url, int((MOST_FETCHED if most is None else most) * 1024 * 1024)
 
 
 @contextlib.contextmanager
@@ -63,7 +68,7 @@ def lent(url: str) -> Iterator[Path]:
     Raises:
         LogError: as `staged` does.
     """
-    asked = url, int(MOST_FETCHED * 1024 * 1024)
+    asked = _asked(url)
     try:
         yield staged(url)
     finally:
