@@ -104,6 +104,14 @@ def _make_streams_safe() -> None:
             stream.reconfigure(errors="replace")
 
 
+class _Stopped(KeyboardInterrupt):
+    """A KeyboardInterrupt of its own class.
+
+    `python -m` ends by SIGINT, with another exit code than ours, once a plain KeyboardInterrupt has left code that
+    was compiled from a text, as dataclasses and named tuples are; even where it was caught above.
+    """
+
+
 class _StopOnSignal:
     """Raises KeyboardInterrupt on Ctrl-C and on SIGTERM, and remembers it."""
 
@@ -119,4 +127,4 @@ class _StopOnSignal:
 
     def _stop(self, _signal: int, _frame: FrameType | None) -> None:
         self.asked = True
-        raise KeyboardInterrupt
+        raise _Stopped

@@ -49,6 +49,22 @@ def test_ctrl_c_while_learning_leaves_nothing(
     assert left_in(long_csv.parent) == {"long.csv"}
 
 
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_while_python_compiles_a_text_ends_with_the_same_code(
+    folder: Path, sent: signal.Signals
+) -> None:
+    stop = f"import os; os.kill(os.getpid(), {int(sent)}); [None for _ in range(1000)]"
+    program = f"""
+import sys
+from slipwise.cli.errors import exit_code_of
+sys.exit(exit_code_of(lambda: exec({stop!r}), debug=False))
+"""
+    (folder / "stopped.py").write_text(program)
+    command = [sys.executable, "-m", "stopped"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, f"slipwise: {STOPPED}\n")
+
+
 def test_ctrl_c_while_simulating_leaves_nothing(interrupted: Slipwise, folder: Path) -> None:
     pytest.importorskip("mujoco")
 
