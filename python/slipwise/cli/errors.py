@@ -107,8 +107,8 @@ def _make_streams_safe() -> None:
 class _Stopped(KeyboardInterrupt):
     """A KeyboardInterrupt of its own class.
 
-    `python -m` ends by SIGINT, with another exit code than ours, once a plain KeyboardInterrupt has left code that
-    was compiled from a text, as dataclasses and named tuples are; even where it was caught above.
+    `python -m` ends by SIGINT, with another exit code than ours, once a plain KeyboardInterrupt has left code
+    that was compiled from a text, as dataclasses and named tuples are; even where it was caught above.
     """
 
 
