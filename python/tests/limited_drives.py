@@ -38,17 +38,3 @@ def search(limits: _core.CommandLimits, commands: Inputs, seed: int) -> _core.Li
     rows = np.column_stack((wheels.t, wheels.v, wheels.omega))
     record = _core.WheelRecord(track_of(commands), np.ascontiguousarray(rows))
     return _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN, None)
-
-
-def true_value(limits: _core.CommandLimits, found: _core.FoundLimit) -> float:
-    """The truth of a limit that was found."""
-    axis = {_core.LimitedAxis.Speed: limits.speed, _core.LimitedAxis.YawRate: limits.yaw_rate}.get(
-        found.axis, limits.side
-    )
-    kinds = _core.LimitKind
-    return {
-        kinds.DeadBand: axis.dead_band,
-        kinds.Saturation: axis.saturation,
-        kinds.SlewRateUp: axis.slew_rate_up,
-        kinds.SlewRateDown: axis.slew_rate_down,
-    }[found.kind]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One measurement at a time: what is learned does not depend on how streams interleave, nor on being asked.
+// One measurement at a time: what is learned does not depend on how streams interleave.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -72,123 +72,6 @@ TEST_CASE("what is later than the latency is rejected and counted") {
   CHECK(events[0].t == 9.4);
 }
 
-TEST_CASE("numbers that cannot be are rejected, and learning goes on as if they had not come") {
-  const Recording run = streamed_robot(2, kSeconds);
-  const LearnedModel expected = learned(run, false);
-  MotionLearner learner(learner_settings(false));
-  learner.start_run();
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  std::size_t wheel = 0;
-  for (const MeasuredPose& pose : run.poses) {
-    for (; wheel < run.wheels.size() && run.wheels[wheel].t <= pose.t; ++wheel) {
-      learner.push_wheels(run.wheels[wheel].t, run.wheels[wheel].twist);
-      learner.push_wheels(run.wheels[wheel].t, {1.0, 0.0, 1.0});
-      learner.push_wheels(kInfinity, {1.0, 0.0, 1.0});
-      learner.push_wheels(kNaN, {1.0, 0.0, 1.0});
-    }
-    learner.push_pose(pose);
-    learner.push_pose({.t = pose.t + 0.001, .x = kNaN, .y = 0.0, .yaw = 0.0});
-    learner.push_pose({.t = pose.t + 0.001, .x = 1e300, .y = 0.0, .yaw = 0.0});
-    learner.push_attitude(pose.t, kNaN, 0.0);
-  }
-  for (; wheel < run.wheels.size(); ++wheel) {
-    learner.push_wheels(run.wheels[wheel].t, run.wheels[wheel].twist);
-  }
-  const LearnedModel model = learner.model();
-  CHECK(model.known.motion->estimate.mean == expected.known.motion->estimate.mean);
-  CHECK(model.known.motion->estimate.covariance == expected.known.motion->estimate.covariance);
-  const auto count = [&](Stream stream, Reason reason) {
-    return model.rejected[static_cast<std::size_t>(stream)][static_cast<std::size_t>(reason)];
-  };
-  CHECK(count(Stream::Pose, Reason::NotFinite) == 2 * run.poses.size());
-  CHECK(count(Stream::Wheels, Reason::DuplicateStamp) > run.wheels.size() / 2);
-  CHECK(count(Stream::Attitude, Reason::NotFinite) == run.poses.size());
-}
-
-TEST_CASE("the hour of the day changes nothing but the stamps") {
-  constexpr double kToday = 1.7e9;  // [s]
-  for (const bool from_commands : {false, true}) {
-    CAPTURE(from_commands);
-    const Recording run = streamed_robot(4, kSeconds);
-    Recording today = run;
-    const auto shift = [](auto& samples) { std::ranges::for_each(samples, [](auto& each) { each.t += kToday; }); };
-    shift(today.commands);
-    shift(today.wheels);
-    shift(today.attitudes);
-    shift(today.poses);
-    const LearnedModel one = learned(run, from_commands);
-    const LearnedModel other = learned(today, from_commands);
-    CHECK(one.segments == other.segments);
-    const Estimate& of_one = one.known.motion->estimate;
-    const Eigen::VectorXd moved = other.known.motion->estimate.mean - of_one.mean;
-    CHECK(moved.cwiseQuotient(of_one.covariance.diagonal().cwiseSqrt()).lpNorm<Eigen::Infinity>() < 1e-3);
-    for (std::size_t h = 0; h < one.held_out.size(); ++h) {
-      REQUIRE(one.held_out[h].size() == other.held_out[h].size());
-      CHECK(std::abs(other.held_out[h].back().end - one.held_out[h].back().end - kToday) < 1e-6);
-    }
-  }
-}
-
-TEST_CASE("being asked changes nothing") {
-  const Recording run = streamed_robot(3, kSeconds);
-  const LearnedModel expected = learned(run, true);
-  MotionLearner learner(learner_settings(true));
-  learner.start_run();
-  std::size_t wheel = 0;
-  std::size_t pose = 0;
-  for (std::size_t i = 0; i < run.commands.size(); ++i) {
-    learner.push_command(run.commands[i].t, run.commands[i].twist);
-    for (; wheel < run.wheels.size() && run.wheels[wheel].t < run.commands[i].t; ++wheel) {
-      learner.push_wheels(run.wheels[wheel].t, run.wheels[wheel].twist);
-    }
-    for (; pose < run.poses.size() && run.poses[pose].t < run.commands[i].t; ++pose) {
-      learner.push_pose(run.poses[pose]);
-    }
-    if (i % 37 == 0) {
-      const PredictedPath path = learner.predict({{run.commands[i].t + 0.1, {0.5, 0.0, 0.1}}}, 2.0);
-      CHECK(path.poses.back().allFinite());
-    }
-    if (i % 311 == 310) {
-      CHECK(learner.model().segments <= expected.segments);
-    }
-  }
-  for (; wheel < run.wheels.size(); ++wheel) {
-    learner.push_wheels(run.wheels[wheel].t, run.wheels[wheel].twist);
-  }
-  for (; pose < run.poses.size(); ++pose) {
-    learner.push_pose(run.poses[pose]);
-  }
-  check_same(expected, learner.model());
-}
-
-TEST_CASE("a prediction asked for at its start is the one that is held against what was measured") {
-  const Recording run = streamed_robot(4, kSeconds);
-  const LearnedModel whole = learned(run, true);
-  REQUIRE(whole.held_out[1].size() > 8);
-  for (std::size_t k = 4; k < whole.held_out[1].size(); k += 3) {
-    const HeldOutPrediction& expected = whole.held_out[1][k];
-    CAPTURE(expected.start);
-    Recording until;
-    std::vector<InputSample> future;
-    for (const InputSample& command : run.commands) {
-      (command.t <= expected.start ? until.commands : future).push_back(command);
-    }
-    std::ranges::copy_if(run.wheels, std::back_inserter(until.wheels),
-                         [&](const InputSample& sample) { return sample.t <= expected.start; });
-    std::ranges::copy_if(run.poses, std::back_inserter(until.poses),
-                         [&](const MeasuredPose& pose) { return pose.t <= expected.start; });
-    MotionLearner learner(learner_settings(true));
-    learner.start_run();
-    push(learner, until);
-    const PredictedPath path = learner.predict(future, expected.end - expected.start, 2.0);
-    CHECK(path.start == expected.start);
-    CHECK((path.poses.back() - expected.pose).norm() < 1e-12);  // the horizon is a difference of stamps
-    CHECK((path.covariances.back() - expected.covariance).norm() < 1e-9);
-    CHECK(expected.learned_until <= expected.start);
-  }
-}
-
 TEST_CASE("runs are not joined, and what was learned stays") {
   const Recording first = streamed_robot(5, kSeconds);
   const Recording second = streamed_robot(6, 20.0, 10.0);  // by a clock that was set again
@@ -204,16 +87,6 @@ TEST_CASE("runs are not joined, and what was learned stays") {
   for (const auto& predictions : after.held_out) {
     for (std::size_t i = 0; i < predictions.size(); ++i) {
       CHECK(predictions[i].end - predictions[i].start < 6.0);
-    }
-  }
-}
-
-TEST_CASE("a robot whose turns slip is learned") {
-  const LearnedModel model = learned(streamed_robot(7, 120.0), false);
-  const MotionPosterior& slip = *model.known.slip;
-  for (Eigen::Index i = 0; i < slip.model.slip_size(); ++i) {
-    if (slip.model.basis().parameter_name(static_cast<std::size_t>(i)) == "ang.w") {
-      CHECK(slip.estimate.mean[i] == doctest::Approx(-1.0 / 3.0).epsilon(0.05));
     }
   }
 }

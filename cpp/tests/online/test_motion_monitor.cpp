@@ -53,7 +53,7 @@ Alarms alarms_of(const TrueDrive& drive, double begin = 0.0) {
 TEST_CASE("a robot that is blocked while its wheels go on is seen within a second, and so is its release") {
   for (const bool wheels : {false, true}) {
     double latest = 0.0;
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       CAPTURE(wheels);
       CAPTURE(seed);
       const Alarms found = alarms_of({.seed = seed,
@@ -86,7 +86,7 @@ TEST_CASE("a robot that moves raises no alarm, whatever the noise of its poses")
     for (const double noise : {0.005, 0.02, 0.1}) {
       CAPTURE(wheels);
       CAPTURE(noise);
-      for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         CHECK(alarms_of({.seed = seed, .wheels = wheels, .pose_xy = noise, .pose_yaw = noise / 2.0}).count == 0);
       }
     }

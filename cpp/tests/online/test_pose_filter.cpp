@@ -77,7 +77,7 @@ Figures figures_of(const TrueDrive& like, std::uint64_t seeds) {
 TEST_CASE("the filter is as exact as it says, and more exact than the poses, where their noise is white") {
   for (const bool wheels : {false, true}) {
     CAPTURE(wheels);
-    const Figures found = figures_of({.seconds = 60.0, .wheels = wheels, .pose_xy = 0.05, .pose_yaw = 0.03}, 6);
+    const Figures found = figures_of({.seconds = 60.0, .wheels = wheels, .pose_xy = 0.05, .pose_yaw = 0.03}, 4);
     MESSAGE("white: NEES " << found.nees << ", position " << found.position << " m, heading " << found.heading
                            << " rad, raw poses " << found.raw_position << " m");
     CHECK(found.nees > 0.5);
@@ -91,7 +91,7 @@ TEST_CASE("the filter does not claim too much where errors of poses last, and is
   for (const double correlation : {0.5, 5.0}) {
     CAPTURE(correlation);
     const Figures found =
-        figures_of({.seconds = 60.0, .pose_xy = 0.02, .pose_yaw = 0.01, .correlation = correlation}, 6);
+        figures_of({.seconds = 60.0, .pose_xy = 0.02, .pose_yaw = 0.01, .correlation = correlation}, 4);
     MESSAGE("correlated: NEES " << found.nees << ", position " << found.position << " m, heading " << found.heading
                                 << " rad, raw poses " << found.raw_position << " m");
     CHECK(found.nees < 4.5);

@@ -20,51 +20,6 @@ InputBuffer driven(int until) {
   return inputs;
 }
 
-TEST_CASE("poses that a robot can reach pass as they are") {
-  PoseGate gate;
-  for (int i = 0; i < 60; ++i) {
-    const GatedPoses found = gate.push(pose_at(i), driven(i));
-    REQUIRE(found.accepted.size() == 1);
-    CHECK(found.accepted[0].frame == 0);
-    CHECK(found.outliers.empty());
-  }
-}
-
-TEST_CASE("a lone pose far away is rejected, and the next is accepted") {
-  PoseGate gate;
-  for (int i = 0; i < 40; ++i) {
-    gate.push(pose_at(i), driven(i));
-  }
-  MeasuredPose away = pose_at(40);
-  away.y = 3.0;
-  CHECK(gate.push(away, driven(40)).accepted.empty());
-  const GatedPoses found = gate.push(pose_at(41), driven(41));
-  REQUIRE(found.outliers.size() == 1);
-  CHECK(found.outliers[0].t == away.t);
-  REQUIRE(found.accepted.size() == 1);
-  CHECK(found.accepted[0].frame == 0);
-}
-
-TEST_CASE("a jump that lasts begins a frame once three more poses agree") {
-  PoseGate gate;
-  for (int i = 0; i < 40; ++i) {
-    gate.push(pose_at(i), driven(i));
-  }
-  for (int i = 40; i < 44; ++i) {
-    MeasuredPose moved = pose_at(i);
-    moved.y = 3.0;
-    const GatedPoses found = gate.push(moved, driven(i));
-    if (i < 43) {
-      CHECK(found.accepted.empty());
-    } else {
-      REQUIRE(found.accepted.size() == 4);
-      CHECK(found.accepted[0].frame == 1);
-      REQUIRE(found.jumps.size() == 1);
-      CHECK(found.jumps[0].t == doctest::Approx(4.0));
-    }
-  }
-}
-
 TEST_CASE("what waits is decided where no pose follows") {
   PoseGate gate;
   for (int i = 0; i < 40; ++i) {

@@ -20,45 +20,6 @@ ManoeuvreVector bent() {
   return parameters;
 }
 
-TEST_CASE("the commands cover the length, forwards or backwards, and end at the end's speed") {
-  for (const double direction : {1.0, -1.0}) {
-    ManoeuvreFrame frame = kFrame;
-    frame.direction = direction;
-    const HeldCommands held = held_commands(frame, bent());
-    REQUIRE(held.commands.size() == 17);
-    double length = 0.0;
-    for (std::size_t k = 0; k < held.end; ++k) {
-      length += held.commands[k].v * held.period.value;
-    }
-    CHECK(length == doctest::Approx(direction * 3.0));
-    CHECK(held.commands.back().v == direction * 0.4);
-    CHECK(held.commands.back().omega == doctest::Approx(0.3 * direction * 0.4));
-  }
-}
-
-TEST_CASE("a constant curvature is kept by every command") {
-  ManoeuvreVector parameters = ManoeuvreVector::Constant(0.7);
-  parameters[kLength] = 2.5;
-  for (const HeldCommand& command : held_commands(kFrame, parameters).commands) {
-    CHECK(command.omega == doctest::Approx(0.7 * command.v));
-  }
-}
-
-TEST_CASE("period, speeds and yaw rates know their derivatives by the parameters") {
-  const auto value = [](const Eigen::VectorXd& at) -> Eigen::VectorXd {
-    const HeldCommands held = held_commands(kFrame, at);
-    return Eigen::Vector4d(held.period.value, held.commands[3].v, held.commands[3].omega, held.commands[12].omega);
-  };
-  const HeldCommands held = held_commands(kFrame, bent());
-  Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(4, kManoeuvreParameters);
-  derivatives(0, kLength) = held.period.derivative;
-  derivatives(1, kLength) = held.commands[3].v_by_length;
-  derivatives.row(2) = held.commands[3].omega_by;
-  derivatives.row(3) = held.commands[12].omega_by;
-  const Eigen::MatrixXd numeric = tests::finite_difference(value, bent(), 1e-2);
-  CHECK(tests::jacobian_error(derivatives, numeric) < tests::kDerivativeTolerance);
-}
-
 TEST_CASE("commands without limits stay as they are; a top holds them and their derivatives") {
   const HeldCommands held = held_commands(kFrame, bent());
   CHECK(limited_commands(held, {}, {}).commands.size() == held.commands.size());

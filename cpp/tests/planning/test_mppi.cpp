@@ -69,24 +69,6 @@ Driven closed_loop(Mppi& controller, const tests::SampleModel& sample, double y,
   return driven;
 }
 
-TEST_CASE("the controller brings a slipping, lagging robot onto its reference within the limits of commands") {
-  const MppiSettings settings = quick_settings();
-  const tests::SampleModel sample = skidding();
-  Mppi controller(programs(sample, settings), settings);
-  const Driven driven = closed_loop(controller, sample, 1.0, 80, nullptr);
-  CHECK(driven.poses.back().y == doctest::Approx(1.0).epsilon(0.1));
-  CHECK(std::abs(driven.poses.back().theta) < 0.15);
-  DriveCommand before;
-  for (const DriveCommand& command : driven.commands) {
-    CHECK(command.v >= settings.limits.lowest_speed - 1e-6);
-    CHECK(command.v <= settings.limits.highest_speed + 1e-6);
-    CHECK(std::abs(command.omega) <= settings.limits.yaw_rate + 1e-6);
-    CHECK(std::abs(command.v - before.v) <= settings.limits.acceleration * settings.period + 1e-5);
-    CHECK(std::abs(command.omega - before.omega) <= settings.limits.yaw_acceleration * settings.period + 1e-5);
-    before = command;
-  }
-}
-
 /// A square obstacle on the line, with cost falling off around it.
 std::vector<float> blocked_cells() {
   std::vector<float> cells(100 * 100);
@@ -129,24 +111,6 @@ TEST_CASE("the same seed and state give the same plan") {
     CHECK(a.effective > 1.0);
     CHECK_FALSE(a.collides);
   }
-}
-
-TEST_CASE("other models take the place of those before, and the plan stays") {
-  const MppiSettings settings = quick_settings();
-  const tests::SampleModel sample = skidding();
-  tests::SampleModel other = sample;
-  other.parameters.head(other.motion.slip_size()) *= -1.0;
-  const MppiReference reference = line(0.5, settings);
-  Mppi kept(programs(sample, settings), settings), renewed(programs(sample, settings), settings);
-  for (int i = 0; i < 3; ++i) {
-    kept.step({}, reference, nullptr);
-    renewed.step({}, reference, nullptr);
-  }
-  renewed.adopt(programs(sample, settings));
-  CHECK(renewed.step({}, reference, nullptr).plan.back().omega == kept.step({}, reference, nullptr).plan.back().omega);
-  renewed.adopt(programs(other, settings));
-  CHECK(renewed.step({}, reference, nullptr).plan.back().omega != kept.step({}, reference, nullptr).plan.back().omega);
-  CHECK_THROWS_AS(renewed.adopt({}), std::invalid_argument);
 }
 
 TEST_CASE("risk counts the worst of several models") {

@@ -80,35 +80,6 @@ TEST_CASE("trajectories reach reachable goals within all limits, with and withou
   check_goals(skidding(true), 0.6, {.drive = moving, .commanded = moving});
 }
 
-TEST_CASE("on a hillside trajectories end at goals that level plans miss") {
-  const tests::SampleModel sample = tests::sample_model(named_basis("odd-even-13"), true);
-  const TrajectoryPlanner planner({sample.motion, sample.parameters}, kLimits, quick_settings(0.0), {});
-  const auto hillside = std::make_shared<const Ground>(Grade{0.05, 0.2});
-  ReachProblem problem = planner.problem({}, planner.settings().cruise);
-  std::mt19937_64 random(12);
-  int reached = 0;
-  double missed = 0.0;
-  constexpr int kGoals = 40;
-  for (int i = 0; i < kGoals; ++i) {
-    const ManoeuvreVector hidden = tests::random_manoeuvre(problem.bounds, random);
-    problem.frame.ground = hillside;
-    const Pose2 goal = manoeuvre_pose(problem.model, problem.frame, hidden, {});
-    const Trajectory plan = planner.to(goal, {}, hillside);
-    if (plan.status != TrajectoryStatus::Reached) {
-      continue;
-    }
-    ++reached;
-    const Pose2 end = driven(sample, plan, {}, hillside);
-    CHECK(std::hypot(end.x - goal.x, end.y - goal.y) < 1.1e-3);
-    CHECK(std::abs(wrap_angle(end.theta - goal.theta)) < 1.1e-3);
-    check_limits(plan, 0.0);
-    const Pose2 as_if_level = driven(sample, planner.to(goal, {}), {}, hillside);
-    missed += std::hypot(as_if_level.x - goal.x, as_if_level.y - goal.y);
-  }
-  CHECK(reached >= kGoals - 2);
-  CHECK(missed / reached > 0.05);
-}
-
 TEST_CASE("a plan refuses an attitude that was measured for ground") {
   const tests::SampleModel sample = skidding(false);
   const TrajectoryPlanner planner({sample.motion, sample.parameters}, kLimits, quick_settings(0.0), {});

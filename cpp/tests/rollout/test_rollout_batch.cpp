@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "rollout/sample_rollouts.hpp"
+#include "slipwise/slip/force_terms.hpp"
 
 namespace slipwise {
 namespace {
@@ -241,11 +242,15 @@ TEST_CASE("what cannot be rolled out is refused and named") {
   CHECK_THROWS_AS(RolloutProgram(model, parameters, {kPeriod, std::numeric_limits<double>::quiet_NaN(), 0.0}),
                   std::invalid_argument);
   CHECK_THROWS_AS(RolloutProgram(model, parameters.head(2), {kPeriod}), std::invalid_argument);
-}
-
-TEST_CASE("a level that the processor lacks is refused, and the portable one is always there") {
-  CHECK(has_instruction_level(InstructionLevel::Portable));
-  CHECK(has_instruction_level(best_instruction_level()));
+  std::vector<std::string> many, none;
+  for (int i = 0; i < 64; ++i) {
+    many.push_back("V^" + std::to_string(1 + i / 8) + "*w^" + std::to_string(1 + i % 8));
+  }
+  const Basis windy = with_force(named_basis("edd-2"), ForceFrame::World);  // rollouts know no heading on the map
+  for (const Basis& basis : {Basis("more products than a kernel has room for", many, none, none), windy}) {
+    const Eigen::VectorXd slip = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(basis.size()), 0.01);
+    CHECK_THROWS_AS(RolloutProgram(MotionModel(basis, {}), slip, {kPeriod}), std::invalid_argument);
+  }
 }
 
 }  // namespace

@@ -139,6 +139,9 @@ TEST_CASE("an uncertainty that does not fit is refused") {
   CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
   uncertain.uncertainty.disturbance = {};
   CHECK_NOTHROW(rollout_covariance(uncertain, commands.batch(kOrigin), entries));
+  uncertain.uncertainty.inflation = std::nan("");
+  CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
+  uncertain.uncertainty.inflation = 1.0;
   uncertain.uncertainty.scale[0] = -1.0;
   CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
   uncertain.uncertainty.covariance = Eigen::Matrix3d::Identity();

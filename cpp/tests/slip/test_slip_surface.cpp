@@ -15,30 +15,6 @@ std::vector<SlipState> sample_states() {
   return {{.v = 0.9, .omega = 0.5}, {.v = -1.2, .omega = 0.8, .gx = 0.3}, {.v = 0.4, .omega = -1.5, .gy = -0.6}};
 }
 
-TEST_CASE("a zero command slips at zero rate in every basis") {
-  for (const Basis& basis : tests::all_bases()) {
-    CHECK(slip_rate(basis, tests::sample_slip(basis, 3), {.gx = 1.0, .gy = 1.0}).isZero(0.0));
-  }
-}
-
-TEST_CASE("slip is linear in its parameters") {
-  for (const Basis& basis : tests::all_bases()) {
-    const Eigen::VectorXd a = tests::sample_slip(basis, 4), b = tests::sample_slip(basis, 5);
-    for (const SlipState& state : sample_states()) {
-      const Eigen::Vector3d sum = 2.0 * slip_rate(basis, a, state) - slip_rate(basis, b, state);
-      CHECK((slip_rate(basis, 2.0 * a - b, state) - sum).norm() < 1e-12);
-    }
-  }
-}
-
-TEST_CASE("each term moves its own channel alone") {
-  const std::vector<std::string> one{"V"}, none;
-  const Eigen::VectorXd alpha = Eigen::VectorXd::Constant(1, 0.5);
-  CHECK(slip_rate(Basis("x", one, none, none), alpha, {.v = 2.0}) == Eigen::Vector3d(1.0, 0.0, 0.0));
-  CHECK(slip_rate(Basis("y", none, one, none), alpha, {.v = 2.0}) == Eigen::Vector3d(0.0, 1.0, 0.0));
-  CHECK(slip_rate(Basis("t", none, none, one), alpha, {.v = 2.0}) == Eigen::Vector3d(0.0, 0.0, 1.0));
-}
-
 TEST_CASE("derivatives of the slip rate are its derivatives by drive and by parameter") {
   for (const Basis& basis : tests::all_bases()) {
     CAPTURE(basis.name());

@@ -3,9 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-import numpy as np
 import pytest
 from sample_slopes import Hills, hilly_log
 from sample_surfaces import FIRM, LOOSE, floor_log, model_of_floors
@@ -16,25 +13,7 @@ from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.settings import make_settings
 from slipwise.calibration.sloping_ground import SLOPE_BASES
 from slipwise.errors import LogError, ModelError, SettingsError
-from slipwise.models import Model, load_model, on_surface
-
-
-@pytest.mark.slow
-def test_learning_goes_on_from_a_model_file(tmp_path: Path) -> None:
-    start = load_model(model_of_floors(FIRM, LOOSE).save(tmp_path / "start.yaml"))
-    log = floor_log(FIRM, 7)
-    calibration, sequence = calibrate_sequence([log], options=SequenceOptions(start=start))
-    assert [log.surface for log in sequence.logs] == ["surface 1"]
-    assert sequence.logs[0].changes[0].what == "recalled"
-    surfaces = {each.name: each for each in calibration.model.content.surfaces}
-    assert (surfaces["surface 1"].visits, surfaces["surface 2"].visits) == (2, 1)
-    assert calibration.model.content.provenance.learned_segments > start.content.provenance.learned_segments
-    before = np.sqrt(np.diag(on_surface(start, "surface 1").covariance)).mean()
-    after = np.sqrt(np.diag(on_surface(calibration.model, "surface 1").covariance)).mean()
-    assert after < before
-    forgot, _ = calibrate_sequence([log], input="wheel")
-    knows, forgets = (each.predictions[0].heading_error[:5].mean() for each in (calibration, forgot))
-    assert knows < forgets
+from slipwise.models import Model
 
 
 @pytest.mark.slow

@@ -14,8 +14,6 @@ import slipwise as sw
 from slipwise.calibration import make_settings
 from slipwise.calibration.core_settings import core_settings
 from slipwise.errors import SettingsError
-from slipwise.live.build import build_node
-from slipwise.live.replay import Replay
 from slipwise.logs import Log, LogOptions
 
 
@@ -30,44 +28,6 @@ def test_the_curves_predict_several_times_better_than_the_best_bicycle(log: Log)
     assert held_out is not None
     assert held_out.position < 0.4 * held_out.baseline_position
     assert held_out.heading < 0.5 * held_out.baseline_heading
-
-
-@pytest.mark.slow
-def test_live_it_is_what_calibrate_writes_to_the_byte(log: Log) -> None:
-    settings = make_settings({"log": {"vehicle": "dart"}})
-    built = build_node(Replay(log, "command", rate=0.0), "command", settings)
-    built.node.run()
-    model, _ = built.learning.learner.judged_model(log=log)
-    assert model.to_yaml() == sw.calibrate(log, settings=settings).model.to_yaml()
-
-
-def test_a_saved_learner_of_a_car_goes_on_to_the_same_model(log: Log) -> None:
-    settings = make_settings({"log": {"vehicle": "dart"}})
-    (run,) = log.runs
-    assert run.commands is not None
-    car = run.commands.car
-    assert car is not None
-    learners = [sw.MotionLearner("command", settings)]
-    learners[0].start_run("car")
-    poses = run.poses
-    for k, t in enumerate(run.commands.t.tolist()):
-        if k == len(poses) // 2:
-            learners.append(sw.MotionLearner.load(learners[0].save()))
-        for learner in learners:
-            learner.push_command(t, float(car.throttle[k]), float(car.steering[k]))
-            learner.push_pose(t, float(poses.x[k]), float(poses.y[k]), float(poses.yaw[k]))
-    one, two = (learner.judged_model(limits=False)[0].content for learner in learners)
-    assert one == two
-
-
-def test_the_kinematic_baseline_of_a_car_is_a_bicycle_and_not_its_curves(log: Log) -> None:
-    scores = {
-        score.method: score
-        for score in sw.evaluate(
-            log, options=sw.EvaluationOptions(horizons=(1.0,), methods=("none", "auto"))
-        ).scores
-    }
-    assert scores["auto"].position.mean < 0.4 * scores["none"].position.mean
 
 
 def test_behind_curves_little_else_is_looked_for(log: Log) -> None:

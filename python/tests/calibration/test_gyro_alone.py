@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from sample_positions import BASIS, HORIZONS, SECONDS, SLIP, commands
 import slipwise as sw
 from slipwise import _core
 from slipwise.calibration.core_settings import core_settings
-from slipwise.logs import Log, Run, open_log
+from slipwise.logs import Log, Run
 from slipwise.logs.log import empty_poses
 from slipwise.segments import recording_of
 from slipwise_sim.known_robot import KnownRobot, known_run
@@ -73,31 +72,6 @@ def test_slip_of_turns_is_true_within_its_uncertainty_and_the_rest_stays_as_it_w
     assert np.abs(z).max() < 4.0
     assert np.mean(normalised) / 2.0 < 2.0
     assert np.mean(stds, axis=0)[1] < 0.01
-
-
-@pytest.mark.slow
-def test_a_table_without_poses_gives_a_model_of_turns_and_says_what_it_is(tmp_path: Path) -> None:
-    run = turning_run(3)
-    assert run.wheels is not None
-    t = np.unique(np.concatenate((run.wheels.t, run.extra["t"])))
-    rows = ["t,odo_v,odo_omega,gyro_z"]
-    wheels = {
-        a: f"{v:.6f},{w:.6f}" for a, v, w in zip(run.wheels.t, run.wheels.v, run.wheels.omega, strict=True)
-    }
-    rates = {a: f"{r:.6f}" for a, r in zip(run.extra["t"], run.extra["gyro_z"], strict=True)}
-    rows += [f"{a:.6f},{wheels.get(a, ',')},{rates.get(a, '')}" for a in t]
-    (tmp_path / "drive.csv").write_text("\n".join([*rows, ""]))
-    calibration = sw.calibrate(open_log(tmp_path / "drive.csv"))
-    verdict = calibration.verdict
-    assert verdict.good
-    assert "Only yaw rates were measured" in verdict.sentence
-    assert "heading misses by" in verdict.sentence
-    known = [name for name, value in calibration.model.parameters.items() if value.identified]
-    assert any(name.startswith("ang.") for name in known)
-    assert not any(name.startswith(("lon.", "lat.")) for name in known)
-    path = sw.predict(calibration.model, [(0.0, 1.0, 0.5), (2.0, 1.0, 0.5)], horizon=2.0)
-    plain = sw.predict(calibration.model, [(0.0, 1.0, 0.0), (2.0, 1.0, 0.0)], horizon=2.0)
-    assert path.covariance[-1, 2, 2] < plain.covariance[-1, 0, 0]
 
 
 def test_a_gyro_that_turns_the_other_way_is_no_log_to_learn_from() -> None:

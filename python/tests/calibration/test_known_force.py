@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,10 +12,8 @@ from sample_logs import STEP, Drive, commands, poses_of
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import LogError
-from slipwise.logs import Inputs, Log, Run, open_log
+from slipwise.logs import Inputs, Log, Run
 from slipwise.logs.log import Forces
-from slipwise.logs.write_tidy import write_csv
-from slipwise.prediction import predict
 
 GIVES = 0.03  # s^2/m, of the slip to the side per speed and force over the mass
 
@@ -41,24 +38,6 @@ def pushed_log(seconds: float = 120.0, *, told: bool = True, late: int = 0, blow
     return Log(runs=(Run(name="blade", commands=None, wheels=inputs, poses=poses, forces=said),))
 
 
-def test_how_the_robot_gives_way_to_a_known_force_is_learned() -> None:
-    told, untold = (
-        calibrate(pushed_log(told=told), input="wheel", settings=make_settings({"basis": basis})).model
-        for told, basis in ((True, "drive-9"), (False, "drive-5"))
-    )
-    gives = told["lat.abs(V)*gy"]
-    assert abs(gives.value - GIVES) < 3.0 * gives.std < 0.02
-    errors = [model.content.verdict.held_out for model in (told, untold)]
-    assert errors[0] is not None
-    assert errors[1] is not None
-    assert errors[0].position < 0.7 * errors[1].position
-    straight = np.array([[0.0, 1.0, 0.0]])
-    left, right = (
-        predict(told, straight, horizon=2.0, known_force=(0.0, f)).poses[-1, 1] for f in (1.5, -1.5)
-    )
-    assert left - right == pytest.approx(2.0 * 2.0 * 1.5 * GIVES, rel=0.3)
-
-
 def test_a_force_that_changes_within_a_window_is_learned_as_it_acts() -> None:
     settings = make_settings({"basis": "drive-9"})
     for late in (0, 1):
@@ -66,19 +45,6 @@ def test_a_force_that_changes_within_a_window_is_learned_as_it_acts() -> None:
             "lat.abs(V)*gy"
         ]
         assert abs(gives.value - GIVES) < 0.1 * GIVES, (late, gives.value)
-
-
-def test_auto_tries_how_the_robot_gives_way_where_a_force_is_known() -> None:
-    model = calibrate(pushed_log(40.0), input="wheel").model
-    assert {"lat.gy", "lat.abs(V)*gy"} <= set(model)
-
-
-def test_a_table_carries_a_known_force(tmp_path: Path) -> None:
-    log = pushed_log(20.0)
-    write_csv(log, tmp_path / "blade.csv")
-    (run,) = open_log(tmp_path / "blade.csv").runs
-    assert run.forces is not None
-    assert set(np.unique(run.forces.y)) == {-1.5, 1.5}
 
 
 def test_a_known_force_beside_an_attitude_is_refused() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from limited_drives import CHAIN, CHANNELS, FREE, SIDES, TRACK, search, track_of, true_value, wheels_behind
+from limited_drives import CHAIN, CHANNELS, FREE, SIDES, TRACK, search, track_of, wheels_behind
 from sample_models import make_model, named
 
 from slipwise import _core
@@ -53,27 +53,6 @@ def log() -> Log:
 @pytest.fixture(scope="module")
 def model(log: Log) -> Model:
     return calibrate(log, input="command").model
-
-
-@pytest.mark.parametrize("limits", [SIDES, CHANNELS], ids=["sides", "channels"])
-def test_limits_are_found_within_three_sigma(limits: _core.CommandLimits) -> None:
-    found = search(limits, steps_drive(11, 60.0), 11).found
-    shown = {(limit.axis, limit.kind) for limit in found}
-    axes = (
-        (_core.LimitedAxis.Side,) if limits is SIDES else (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate)
-    )
-    smooth = (_core.LimitKind.Saturation, _core.LimitKind.SlewRateUp, _core.LimitKind.SlewRateDown)
-    assert {(axis, kind) for axis in axes for kind in smooth} <= shown
-    assert {axis for axis, _ in shown} == set(axes)
-    for limit in found:
-        truth = true_value(limits, limit)
-        assert abs(limit.value - truth) <= 3.0 * limit.std
-        assert limit.std < 0.5 * truth
-
-
-def test_a_drive_without_limits_shows_none() -> None:
-    none = _core.CommandLimits(FREE, FREE, FREE, TRACK, 1.0, 1.0)
-    assert not search(none, steps_drive(5, 60.0), 5).found
 
 
 def test_a_drive_that_is_too_dull_says_what_would_show_a_limit() -> None:
@@ -247,10 +226,3 @@ def test_looking_for_limits_changes_nothing_that_is_learned(log: Log) -> None:
 
     asked, other = learned(asked=True), learned(asked=False)
     assert asked.estimate.mean.tobytes() == other.estimate.mean.tobytes()
-
-
-def test_too_few_wheel_speeds_show_no_limits(log: Log) -> None:
-    learner = _core.MotionLearner(core_settings(Settings(), "command", ()))
-    learner.start_run()
-    learner.push(recording_of(log.runs[0], until=10.0))
-    assert learner.find_limits(TRACK) is None

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +16,7 @@ from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import SettingsError
-from slipwise.logs import Log, Run
+from slipwise.logs import Log
 from slipwise.student import fraction_inside
 from slipwise_sim.known_robot import KnownRobot, known_run
 
@@ -72,26 +71,6 @@ def test_slip_is_true_within_its_uncertainty_with_white_and_with_drifting_positi
     assert std[:, 2] == pytest.approx(STRAIGHT_SIDE_SLIP, rel=0.05)  # nothing is claimed to be known of it
 
 
-def test_live_positions_teach_what_the_log_of_them_does() -> None:
-    log = positions_log(3)
-    learner = MotionLearner("wheel", SETTINGS, positions=True)
-    learner.start_run("drive")
-    run = log.runs[0]
-    assert run.wheels is not None
-    for k, (t, v, omega) in enumerate(zip(run.wheels.t, run.wheels.v, run.wheels.omega, strict=True)):
-        learner.push_wheels(t, v, omega)
-        learner.push_position(run.poses.t[k], run.poses.x[k], run.poses.y[k])
-    restored = MotionLearner.load(learner.save())
-    assert restored.save() == learner.save()
-    live = learner.model(limits=False).content
-    recorded = calibrate(log, settings=SETTINGS, input="wheel").model.content
-    apart = np.abs(np.array([p.value for p in live.parameters]) - [p.value for p in recorded.parameters])
-    std = np.array([p.std for p in recorded.parameters])
-    assert (apart < 0.05 * std + 1e-9).all()  # the log has one position more at its end
-    assert "Only positions were measured" in live.verdict.sentence
-    assert "Only positions were measured" in recorded.verdict.sentence
-
-
 def test_a_learner_of_poses_refuses_positions() -> None:
     with pytest.raises(SettingsError, match="positions=True"):
         MotionLearner("wheel").push_position(0.0, 0.0, 0.0)
@@ -102,20 +81,6 @@ def test_without_positions_no_prior_changes() -> None:
     assert plain.hypotheses.filter.prior.straight_side_slip_std is None
     with_positions = core_settings(Settings(), "wheel", HORIZONS, positions=True)
     assert with_positions.hypotheses.filter.prior.straight_side_slip_std == STRAIGHT_SIDE_SLIP
-
-
-def test_positions_and_what_moves_between_them_survive_a_table(tmp_path: Path) -> None:
-    from slipwise.logs import open_log, save_log
-
-    run: Run = positions_log(1).runs[0]
-    save_log(Log(runs=(run,)), tmp_path / "a.csv")
-    assert "yaw" not in (tmp_path / "a.csv").read_text().splitlines()[0]
-    again = open_log(tmp_path / "a.csv").runs[0].poses
-    assert again.course
-    np.testing.assert_allclose(again.x, run.poses.x, atol=1e-9)
-    moving = np.hypot(np.diff(again.x, prepend=again.x[0]), np.diff(again.y, prepend=again.y[0])) > 0.03
-    apart = np.angle(np.exp(1j * (again.yaw - run.poses.yaw)))[moving]
-    assert np.median(np.abs(apart)) < 0.2
 
 
 def test_evaluations_and_inspections_say_that_only_positions_were_measured() -> None:

@@ -11,12 +11,10 @@ from sample_logs import Drive, poses_of, simulated_log
 
 from slipwise import _core
 from slipwise.calibration import Calibration, calibrate, make_settings
-from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.errors import SettingsError
 from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.logs import Log
 from slipwise.models.sensor_look import sensor_look, sensor_sentences
-from slipwise.prediction import predict
 
 SENSOR = (1.2, -0.3, 0.15)
 SLIP = (-0.08, -0.3)  # lon.V, ang.w
@@ -129,29 +127,3 @@ def test_slip_that_looks_like_a_sensor_names_its_place(log: Log, source: str) ->
 def test_a_sensor_at_the_centre_of_turning_is_not_spoken_of() -> None:
     log = seen_by_sensor(simulated_log(DRIVE), (0.02, 0.01, 0.01))
     assert not sensor_sentences(calibrated(log, {}, basis="full-linear-6").model)
-
-
-def test_a_learner_predicts_base_link_wherever_the_sensor_sits_and_was_guessed(log: Log) -> None:
-    settings = make_settings({"basis": "edd-2", "sensor_extrinsics": {"learn": True}})
-    learner = MotionLearner(input="wheel", settings=settings)
-    learner.start_run("monday")
-    (run,) = log.runs
-    assert run.wheels is not None
-    rows = [(t, learner.push_wheels, (t, v, omega)) for t, v, omega in _rows(run.wheels, "t", "v", "omega")]
-    rows += [(pose[0], learner.push_pose, pose) for pose in _rows(run.poses, "t", "x", "y", "yaw")]
-    for _, push, row in sorted(rows, key=lambda each: each[0]):
-        push(*row)
-    model, end = learner.model(), rows[-1][0]
-    ahead = np.array([[end + 0.01, 0.6, 0.5], [end + 1.0, 0.4, 0.7]])
-    path = learner.predict(ahead, horizon=2.0)
-    held = np.vstack(([end - 5.0, *ahead[0, 1:]], ahead))  # wheels roll from the start on as they will
-    expected = predict(model, held, horizon=2.0, start=path.start)
-    np.testing.assert_allclose(path.poses[-1], expected.end, atol=0.02)
-    at_sensor = _core.compose(
-        _core.inverse(_core.Pose2(*SENSOR)), _core.compose(_core.Pose2(*expected.end), _core.Pose2(*SENSOR))
-    )
-    assert np.abs(at_sensor.vector() - expected.end).max() > 0.3
-
-
-def _rows(series: object, *names: str) -> list[tuple[float, ...]]:
-    return list(zip(*(getattr(series, name).tolist() for name in names), strict=True))

@@ -11,10 +11,6 @@ import pytest
 from cli.conftest import Result
 from sample_models import make_model, named
 
-from slipwise import _core
-from slipwise.models import Model
-from slipwise.models.schema import BodyForceSection
-
 Slipwise = Callable[..., Result]
 
 
@@ -45,23 +41,6 @@ def test_differences_stand_with_both_values_and_z(slipwise: Slipwise, models: tu
         "+14.1",
     ]
     assert "Both have learned from the same log" in result.out
-
-
-def test_a_force_of_one_day_is_not_compared(
-    slipwise: Slipwise, folder: Path, models: tuple[Path, Path]
-) -> None:
-    made = named("edd-2", lon__V=-0.1, ang__w=-0.3)
-    basis = _core.with_force(made.basis, _core.ForceFrame.Body)
-    towing = make_model(replace(made, basis=basis, values={**made.values, "lon.abs(V)": -0.2}))
-    law = BodyForceSection(frame="body", time_constant=60.0, std=0.03)
-    content = towing.content.model_copy(update={"body_force": law})
-    saved = Model(content).save(folder / "towing.yaml")
-    assert "Nothing differs: 5 of 5 numbers agree" in slipwise("compare", models[0], saved).out
-
-
-def test_models_that_agree_are_said_to(slipwise: Slipwise, folder: Path, models: tuple[Path, Path]) -> None:
-    again = make_model(named("edd-2", lon__V=-0.1, ang__w=-0.31)).save(folder / "again.yaml")
-    assert "Nothing differs: 5 of 5 numbers agree" in slipwise("compare", models[0], again).out
 
 
 def test_a_log_decides_which_predicts_better(
@@ -105,20 +84,3 @@ def test_models_that_cannot_be_compared_are_one_line(
     assert result.code == 2
     assert "one model was learned from wheels, the other from commands" in result.line
     assert slipwise("compare", models[0], models[0]).line.startswith("a model file is given twice")
-
-
-def test_the_result_replaces_none_of_the_models(slipwise: Slipwise, models: tuple[Path, Path]) -> None:
-    before = models[1].read_bytes()
-    assert slipwise("compare", *models, "--json", models[1]).code == 2
-    assert models[1].read_bytes() == before
-
-
-def test_evaluate_takes_several_models_and_judges_the_first(
-    slipwise: Slipwise, drive_csv: Path, models: tuple[Path, Path]
-) -> None:
-    given = [part for path in models for part in ("--model", path)]
-    result = slipwise("evaluate", drive_csv, *given, "--methods", "right.yaml,wrong.yaml", "--horizons", "2")
-    assert result.code == 0
-    assert "right.yaml predicts better" in result.out
-    assert "Next: export it:" in result.out
-    assert "slipwise export" in result.out

@@ -40,21 +40,3 @@ def test_surfaces_and_predictions_of_a_sequence_are_written(
         rows = list(csv.DictReader(file))
     assert {row["log"] for row in rows} == {"0", "1"}
     assert {row["method"] for row in rows} == {"none", "auto"}
-
-
-def test_people_see_a_table_of_visits_and_one_of_surfaces(slipwise: Slipwise, logs: list[Path]) -> None:
-    result = slipwise("evaluate", "--memory", *logs, "--input", "wheel", "--horizons", "1")
-    assert "drive1.csv" in result.out
-    assert "Surfaces" in result.out
-
-
-def test_a_report_of_a_sequence_shows_its_surfaces(
-    slipwise: Slipwise, folder: Path, logs: list[Path]
-) -> None:
-    page = folder / "r.html"
-    result = slipwise(
-        *("evaluate", "--memory", *logs, "--input", "wheel", "--horizons", "1", "--report", page)
-    )
-    assert result.code == 0
-    assert "surface 1" in page.read_text(encoding="utf-8")
-    assert str(page) in result.out.replace("\n", "")

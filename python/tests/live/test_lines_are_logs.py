@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import io
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -66,13 +65,3 @@ def test_lines_teach_what_their_table_does(tmp_path: Path) -> None:
         (tmp_path / name).mkdir()
         found[name] = difference(kind, tmp_path / name)
     assert {name: said for name, said in found.items() if said} == {}
-
-
-def test_a_model_of_a_gyro_alone_is_judged_and_published(tmp_path: Path) -> None:
-    results = io.BytesIO()
-    kind = kinds()["a gyro alone"]
-    pipe = Pipe(io.BytesIO(kind.text().encode()), results)
-    built = learned(pipe, pipe.look(), kind, LogOptions())
-    assert built.learning.judgement is not None
-    said = [json.loads(line) for line in results.getvalue().splitlines()]
-    assert any(each.get("parameters") for each in said)

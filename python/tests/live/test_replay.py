@@ -8,16 +8,14 @@ import json
 import socket
 import threading
 import time
-from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 from sample_logs import Drive, simulated_log
 from scripted_node import SLIP
 
 import slipwise as sw
-from slipwise.calibration import Settings, make_settings
+from slipwise.calibration import Settings
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import SettingsError
 from slipwise.live.build import Built, build_node
@@ -26,7 +24,6 @@ from slipwise.live.replay import Replay, samples_of
 from slipwise.live.samples import Command, Pose, Wheels
 from slipwise.live.udp import Udp
 from slipwise.logs import Log
-from slipwise.logs.log import empty_poses
 
 
 @pytest.fixture(scope="module")
@@ -53,25 +50,6 @@ def lines_of(log: Log, input_name: str) -> list[str]:
 def without_origin(text: str) -> str:
     """A model file without the log that it came from."""
     return "\n".join(line for line in text.splitlines() if "sha256" not in line and "logs:" not in line)
-
-
-def test_replayed_it_is_what_calibrate_writes_to_the_byte(log: Log) -> None:
-    built = build_node(Replay(log, "command", rate=0.0), "command", Settings())
-    built.node.run()
-    model, _ = built.learning.learner.judged_model(log=log)
-    assert model.to_yaml() == sw.calibrate(log, input="command").model.to_yaml()
-
-
-def test_replayed_positions_are_what_calibrate_writes_to_the_byte(log: Log) -> None:
-    input_name = "wheel"
-    runs = tuple(replace(run, poses=replace(run.poses, course=True)) for run in log.runs)
-    positions = Log(runs=runs)
-    settings = make_settings({"live": {"positions": True}})
-    built = build_node(Replay(positions, input_name, rate=0.0), input_name, settings)
-    built.node.run()
-    model, _ = built.learning.learner.judged_model(log=positions)
-    assert model.content.verdict.sentence.count("Only positions were measured") == 1
-    assert model.to_yaml() == sw.calibrate(positions, input=input_name, settings=settings).model.to_yaml()
 
 
 def test_runs_of_a_log_stay_apart() -> None:
@@ -144,19 +122,3 @@ def test_a_wrong_line_is_said_once_and_the_rest_goes_on(tmp_path: Path) -> None:
         "left out, line 2: 2 cells where the header has 3",
         "left out, line 5: t is 'x', not a number",
     ]
-
-
-@pytest.mark.slow
-def test_replayed_sources_and_yaw_rates_are_what_calibrate_writes_to_the_byte(log: Log) -> None:
-    (run,) = log.runs
-    beside = replace(run, others={"second": replace(run.poses, t=run.poses.t + 0.05)}, source="first")
-    t, yaw = run.poses.t, np.unwrap(run.poses.yaw)
-    rates = {"t": 0.5 * (t[1:] + t[:-1]), "gyro_z": np.diff(yaw) / np.diff(t)}
-    turning = replace(run, poses=empty_poses(), extra=rates)
-    for each, live in ((beside, {"sources": ["first", "second"]}), (turning, {"gyro_alone": True})):
-        replayed = Log(runs=(each,))
-        settings = make_settings({"live": live})
-        built = build_node(Replay(replayed, "wheel", rate=0.0), "wheel", settings)
-        built.node.run()
-        model, _ = built.learning.learner.judged_model(log=replayed)
-        assert model.to_yaml() == sw.calibrate(replayed, input="wheel", settings=settings).model.to_yaml()

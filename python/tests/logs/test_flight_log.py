@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import sys
 from collections.abc import Callable
@@ -128,18 +127,6 @@ def test_a_log_that_is_cut_off_gives_what_is_whole_or_says_so(file: Path) -> Non
     file.write_bytes(data[: len(data) // 2])
     (run,) = open_log(file, options=OPTIONS).runs
     assert 150 <= len(run.poses) <= 250
-
-
-def test_damaged_bytes_never_end_otherwise_than_in_a_log_or_a_log_error(file: Path) -> None:
-    data, rng = bytearray(file.read_bytes()), np.random.default_rng(0)
-    for _ in range(15):
-        damaged = bytearray(data[:40_000])
-        for at in rng.integers(0, len(damaged), 60):
-            damaged[at] = rng.integers(256)
-        damaged[:12] = data[:12]
-        file.write_bytes(damaged)
-        with contextlib.suppress(LogError):
-            assert len(open_log(file, options=OPTIONS).runs) == 1
 
 
 def test_a_message_without_length_is_not_read_for_ever(tmp_path: Path) -> None:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import sys
 from pathlib import Path
 from typing import Any
@@ -164,17 +163,6 @@ def test_a_transform_that_is_no_number_is_a_pose_left_out(tmp_path: Path) -> Non
     assert np.isfinite(log.runs[0].poses.x).all()
     assert len(log.runs[0].poses) == COUNT - 2  # and the one after it, between which and it lies its stamp
     assert sum(entry.count for entry in log.left_out) == 2
-
-
-def test_damaged_bytes_never_end_otherwise_than_in_a_log_or_a_log_error(file: Path) -> None:
-    data, rng = file.read_bytes(), np.random.default_rng(0)
-    for _ in range(15):
-        damaged = bytearray(data)
-        for at in rng.integers(8, len(damaged), 20):
-            damaged[at] = rng.integers(256)
-        file.write_bytes(damaged)
-        with contextlib.suppress(LogError):
-            assert len(open_log(file).runs) == 1
 
 
 def test_what_unpacks_to_too_much_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

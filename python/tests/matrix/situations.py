@@ -84,12 +84,21 @@ def of_car(name: str, *sensors: Sensor, robot: Robot = THROTTLE, **changes: obje
 def of_turns(name: str, driven: Sensor, learns: str = "command") -> Situation:
     """Return a situation in which a gyro alone measures."""
     sensors = (driven, logs.gyro())
-    return Situation(name, PLAIN, sensors, learns, truth=TURNS, changed=TIGHTER, turns=True)
+    also = ("several-logs",)
+    return Situation(name, PLAIN, sensors, learns, truth=TURNS, changed=TIGHTER, turns=True, also=also)
 
 
 SITUATIONS: tuple[Situation, ...] = (
-    Situation("wheels", PLAIN, (WHEELS, POSES), "wheel", truth=SLIP, changed=TIGHTER),
-    Situation("commands", PLAIN, (TOLD, POSES), truth=SLIP | LAGS, changed=TIGHTER, never=("at once",)),
+    Situation("wheels", PLAIN, (WHEELS, POSES), "wheel", truth=SLIP, changed=TIGHTER, also=("several-logs",)),
+    Situation(
+        "commands",
+        PLAIN,
+        (TOLD, POSES),
+        truth=SLIP | LAGS,
+        changed=TIGHTER,
+        never=("at once",),
+        also=("several-logs",),
+    ),
     Situation(
         "limits",
         replace(PLAIN, axes=LIMITED),
@@ -141,7 +150,7 @@ SITUATIONS: tuple[Situation, ...] = (
         changed=replace(STEERED, slip={"lon.V": -0.06, "ang.w": -0.4}),
         never=("at once",),
     ),
-    of_car("throttle", POSES),
+    of_car("throttle", POSES, also=("several-logs",)),
     of_car("throttle-tighter", POSES, changed=CURVED, uses=("compare", "fleet")),
     of_car("throttle-odometry", logs.odometry("odo_v"), POSES, uses=("inspect", "calibrate")),
     of_car("throttle-positions", PoseSensor(yaw=False), uses=("calibrate", "replay")),
@@ -277,6 +286,7 @@ SITUATIONS: tuple[Situation, ...] = (
         before=(SLIPPERY, (WHEELS, POSES)),
         truth=SLIP,
         changed=TIGHTER,
+        also=("several-logs",),
     ),
     Situation(
         "labels",

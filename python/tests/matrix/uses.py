@@ -133,9 +133,8 @@ USES: dict[str, Use] = {
     "ahead": streams.ahead,
     "parquet": streams.parquet,
     "mcap": streams.mcap,
-    "several-logs": streams.several_logs,
     "fleet": fleet,
     **{f"to-{name}": use for name, use in exports.TARGETS.items()},
 }
 #: Uses of single situations.
-OWN: dict[str, Use] = {"dynamics": trailer.dynamics}
+OWN: dict[str, Use] = {"dynamics": trailer.dynamics, "several-logs": streams.several_logs}

@@ -15,7 +15,6 @@ from slipwise.errors import ModelError
 from slipwise.export import export_model
 from slipwise.logs import Log, LogOptions
 from slipwise.models.car import KnotCurveSection
-from slipwise.models.difference import differences
 from slipwise.planning import Planner, curvature_map, lattice_primitives
 
 
@@ -57,19 +56,6 @@ def test_a_model_of_speeds_says_nothing_of_a_car() -> None:
     assert "\ncar:" not in text
 
 
-def driven(model: sw.Model, throttle: float, initial: tuple[float, float] | None = None) -> float:
-    """Metres along the path that is predicted for five seconds."""
-    poses = sw.predict(model, [(0.0, throttle, 0.0)], horizon=5.0, initial=initial).poses
-    return float(np.hypot(*np.diff(poses[:, :2], axis=0).T).sum())
-
-
-def test_predict_takes_throttle_and_steering(model: sw.Model) -> None:
-    at_speed, from_rest = driven(model, 0.6, (2.0, 0.0)), driven(model, 0.6)
-    assert at_speed == pytest.approx(10.0, rel=0.1)
-    assert from_rest == pytest.approx(at_speed - 0.8, rel=0.1)  # a lag of 0.4 s at 2 m/s
-    assert driven(model, 0.1) < 0.4
-
-
 def test_what_takes_speeds_refuses_such_a_model(model: sw.Model) -> None:
     with pytest.raises(ModelError, match="throttle and steering"):
         export_model(model, "c-header", name="car", force=True)
@@ -81,17 +67,6 @@ def test_what_takes_speeds_refuses_such_a_model(model: sw.Model) -> None:
 def learned(folder: Path, seed: int, *, car: _core.CarCurves | None = None, fastest: float = 0.8) -> sw.Model:
     path = write_car_log(folder / f"car-{seed}.csv", 120.0, seed, car=car, fastest=fastest)
     return sw.calibrate(sw.open_log(path, options=LogOptions(vehicle="dart"))).model
-
-
-def test_another_speed_or_another_turn_differs_and_the_same_car_does_not(
-    model: sw.Model, tmp_path: Path
-) -> None:
-    def names(other: sw.Model) -> list[str]:
-        return [each.name for each in differences(model, other) if each.different]
-
-    assert not names(learned(tmp_path, 2))
-    assert "speed per throttle" in names(learned(tmp_path, 3, car=changed_car(speed=0.7)))
-    assert "curvature per steering" in names(learned(tmp_path, 4, car=changed_car(curvature=1.4)))
 
 
 def test_what_is_shown_of_a_car_is_its_curves_and_lags(model: sw.Model) -> None:

@@ -271,20 +271,6 @@ def test_mutated_file_is_read_or_refused_and_nothing_else(
     read_or_refused(yaml.safe_dump(mutated), tmp_path_factory.getbasetemp() / "mutated.yaml")
 
 
-@settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
-@given(data=st.data())
-def test_damaged_text_is_read_or_refused_and_nothing_else(
-    model: Model, tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
-) -> None:
-    text = model.to_yaml()
-    begin = data.draw(st.integers(0, len(text)))
-    end = data.draw(st.integers(begin, min(len(text), begin + 40)))
-    read_or_refused(
-        text[:begin] + data.draw(st.text(max_size=12)) + text[end:],
-        tmp_path_factory.getbasetemp() / "damaged.yaml",
-    )
-
-
 def read_or_refused(text: str, path: Path) -> None:
     """A file that is read must also be usable: it predicts finite poses with a positive covariance."""
     path.write_bytes(text.encode("utf-8", errors="surrogatepass"))

@@ -11,7 +11,6 @@ from sample_models import LIMITS, Made, make_model
 import slipwise as sw
 from slipwise import _core
 from slipwise.errors import ModelError, SettingsError
-from slipwise.excitation import CommandSpace, ExcitationOptions, design_drive, knowledge_of
 from slipwise.export import export_model
 from slipwise.models import Model
 from slipwise.models.axes import LEAST_SIDEWAYS, SIDEWAYS, axes_of, sideways_span
@@ -47,28 +46,6 @@ def commands() -> Floats:
     return np.stack([random.uniform(*span, (N, K)) for span in spans], axis=2)
 
 
-def predicted(model: Model, rows: Floats) -> Floats:
-    """The last pose of `predict` after standing still for long enough."""
-    t = np.arange(-20, K) * DT
-    told = np.column_stack((t, np.vstack((np.zeros((20, 3)), rows))))
-    return predict(model, told, horizon=K * DT, start=0.0, initial=(0.0, 0.0, 0.0)).end
-
-
-def test_rollouts_of_a_sideways_robot_are_its_predictions(commands: Floats) -> None:
-    start = Start(past=np.zeros((20, 3)))
-    wrong = []
-    for name, model in MODELS.items():
-        for dtype, tolerance in ((np.float64, 1e-9), (np.float32, 3e-5)):
-            path = rollout(model, commands, DT, start=start, dtype=dtype).path
-            assert path is not None
-            for n in range(0, N, 4):
-                gap = np.abs(path[:, -1, n] - predicted(model, commands[n])).max()
-                wrong += [(name, dtype, n, gap)] if gap > tolerance else []
-        aside = np.abs(path[1, -1, :]).max()
-        wrong += [(name, "does not move sideways")] if aside < 0.1 else []
-    assert not wrong
-
-
 def test_covariance_and_futures_know_the_sideways_speed(commands: Floats) -> None:
     model = MODELS["commands"]
     start = Start(past=np.zeros((20, 3)), drive=(0.0, 0.2, 0.0))
@@ -78,24 +55,6 @@ def test_covariance_and_futures_know_the_sideways_speed(commands: Floats) -> Non
     drawn = sample_futures(model, commands, DT, samples=200, seed=1, start=start)
     assert drawn.mean(axis=1)[:2, -1] == pytest.approx(found.path[:2, -1], abs=0.05)
     assert drawn[1, :, -1].var(axis=0) == pytest.approx(found.covariance[2, -1], rel=0.4)
-
-
-def test_left_mirrors_right_in_predictions(commands: Floats) -> None:
-    flip = np.array([1.0, -1.0, -1.0])
-    signs = []
-    for channel, terms in enumerate((OMNI.lon, OMNI.lat, OMNI.ang)):
-        for term in terms:
-            odd = sum(part in ("Vy", "V3", "w") for part in term.split("*")) + (channel > 0)
-            signs.append(1.0 if odd % 2 == 0 else -1.0)
-    model = MODELS["wheels"]
-    mirrored = [
-        parameter.model_copy(update={"value": sign * parameter.value})
-        for parameter, sign in zip(model.content.parameters, signs, strict=True)
-    ]
-    other = Model(model.content.model_copy(update={"parameters": mirrored}))
-    here, there = predicted(model, commands[0]), predicted(other, commands[0] * flip)
-    np.testing.assert_allclose(there * flip, here, atol=1e-12)
-    assert np.abs(predicted(model, 0.0 * commands[0])).max() == 0.0
 
 
 def test_rows_of_other_axes_are_refused_and_the_axes_are_said(commands: Floats) -> None:
@@ -166,17 +125,6 @@ def test_the_controller_drives_sideways_where_that_is_the_way() -> None:
     assert aside.max() > 0.1
     assert np.abs(aside).max() <= options.sideways_speed + 1e-6
     assert np.abs(np.diff(aside)).max() <= options.sideways_acceleration * DT + 1e-6
-
-
-def test_a_designed_drive_moves_sideways_and_ends_with_its_heading() -> None:
-    model = MODELS["wheels"]
-    space = CommandSpace(1.0, 0.8, sideways=0.5)
-    options = ExcitationOptions(area=None, minutes=0.6, checked=10, robots=10)
-    drive = design_drive(knowledge_of(model), space, options)
-    aside = [move.vy for move in drive.moves]
-    assert max(aside) > 0.0
-    assert sorted(aside) == sorted(-vy for vy in aside)
-    assert max(map(abs, aside)) <= space.sideways
 
 
 def test_what_drives_sideways_is_an_axis_and_noise_of_odometry_is_none() -> None:

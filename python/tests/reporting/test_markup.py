@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from slipwise.reporting.markup import escape, legend, number, table
+from slipwise.reporting.markup import escape, number, table
 
 
 def test_number_has_three_digits_or_a_dash(subtests: pytest.Subtests) -> None:
@@ -34,7 +34,3 @@ def test_table_escapes_its_cells_and_scrolls_in_its_own_box() -> None:
     assert "<a>" not in html
     assert "<b>" not in html
     assert html.startswith('<div class="scroll"')
-
-
-def test_legend_escapes_its_labels() -> None:
-    assert "&lt;x&gt;" in legend([("<x>", "#000000", "line")])

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from slipwise.reporting.palette import stroke_of, transparent
+from slipwise.reporting.palette import stroke_of
 
 METHODS = ("none", "vendor", "edd-2", "drive-5", "ipem-9", "odd-even-10", "batch", "auto")
 
@@ -15,11 +15,3 @@ def test_methods_differ_in_colour() -> None:
 
 def test_main_methods_keep_their_colour_whatever_is_compared() -> None:
     assert stroke_of("auto", ("auto",)) == stroke_of("auto", METHODS)
-
-
-def test_method_that_is_not_listed_has_a_stroke_too() -> None:
-    assert stroke_of("mine", METHODS).colour.startswith("#")
-
-
-def test_transparent_colour_keeps_its_parts() -> None:
-    assert transparent("#ff8000", 0.25) == "rgba(255,128,0,0.25)"

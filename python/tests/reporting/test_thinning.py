@@ -6,11 +6,6 @@ from __future__ import annotations
 from slipwise.reporting.thinning import thinned, thinning_note
 
 
-def test_short_curve_is_left_as_it_is() -> None:
-    assert thinned(5, 10).tolist() == [0, 1, 2, 3, 4]
-    assert thinning_note(5, 10) == ""
-
-
 def test_long_curve_keeps_its_ends_and_says_so() -> None:
     kept = thinned(100_000, 2000)
     assert (kept[0], kept[-1], len(kept)) == (0, 99_999, 2000)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import numpy as np
 from reporting.synthetic_results import make_results
 
-from slipwise.logs.log import Log, Run, empty_poses
 from slipwise.reporting.timeline import Timeline, with_breaks
 
 
@@ -15,12 +14,6 @@ def test_runs_follow_each_other_without_a_pause() -> None:
     at = timeline.at(np.array([0, 1, 2]), np.zeros(3))
     assert np.allclose(at, [0.0, 119.9, 239.8])
     assert [shape["x0"] for shape in timeline.shapes()] == at[1:].tolist()
-
-
-def test_log_without_runs_or_times_has_a_timeline_too() -> None:
-    assert Timeline.of(Log(runs=())).at(np.zeros(2, np.int64), np.array([3.0, 4.0])).tolist() == [3.0, 4.0]
-    bare = Log(runs=(Run("bare", None, None, empty_poses()),))
-    assert Timeline.of(bare).at(np.zeros(1, np.int64), np.array([2.0])).tolist() == [2.0]
 
 
 def test_line_breaks_where_the_run_changes() -> None:

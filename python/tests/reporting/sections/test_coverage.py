@@ -46,11 +46,3 @@ def test_log_without_wheel_speeds_has_no_figure_where_these_were_asked_for() -> 
     results = make_results()
     wheel = replace(results, evaluation=replace(results.evaluation, input="wheel"))
     assert coverage_figure(contents_of(wheel)) is None
-
-
-def test_colours_are_labelled_by_round_times_between_the_extremes() -> None:
-    data = figures_of(_html(make_results()))["figure-coverage"]["data"][0]
-    seconds = np.array(data["customdata"])
-    labelled = [float(text) for text in data["colorbar"]["ticktext"]]
-    assert len(labelled) >= 2
-    assert seconds[seconds > 0.0].min() <= labelled[0] < labelled[-1] <= seconds.max()

@@ -9,7 +9,7 @@ import numpy as np
 from reporting.page_parts import contents_of, figures_of
 from reporting.synthetic_results import make_results
 
-from slipwise.logs.log import Log, empty_poses
+from slipwise.logs.log import Log
 from slipwise.reporting.chosen_windows import MOST_WINDOWS
 from slipwise.reporting.sections.paths import PathsSection
 
@@ -56,16 +56,3 @@ def test_far_away_poses_keep_their_shape() -> None:
         for r in (run, far)
     )
     assert np.allclose(near["data"][0]["x"], moved["data"][0]["x"], atol=1e-4)
-
-
-def test_log_without_poses_gives_a_sentence() -> None:
-    results = make_results()
-    bare = replace(results, log=Log(runs=(replace(results.log.runs[0], poses=empty_poses()),)))
-    assert "no measured poses" in PathsSection().html(contents_of(bare))
-
-
-def test_times_of_a_later_run_count_from_the_start_of_the_log() -> None:
-    results = make_results(runs=2)
-    figures = figures_of(PathsSection().html(contents_of(results)))
-    times = sorted(figures[name]["data"][0]["customdata"][0] for name in ("figure-map-1", "figure-map-2"))
-    assert np.allclose(times, [0.0, 119.9], atol=1e-3)

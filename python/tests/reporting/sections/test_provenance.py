@@ -28,7 +28,3 @@ def test_log_that_was_only_learned_from_is_listed_too() -> None:
     results = make_results()
     text = text_of(ProvenanceSection().html(contents_of(replace(results, log=Log(runs=results.log.runs)))))
     assert f"/data/field.mcap learned from {'ab' * 32}" in text
-
-
-def test_command_that_was_not_given_is_said() -> None:
-    assert "command line not recorded" in text_of(ProvenanceSection().html(contents_of(make_results())))

@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 from reporting.page_parts import contents_of, figures_of
-from reporting.synthetic_results import make_results, with_model
+from reporting.synthetic_results import make_results
 
-from slipwise.models.schema import Range, Slip
 from slipwise.reporting.sections.surfaces import SurfacesSection
 
 
@@ -20,20 +19,3 @@ def test_maps_show_the_slip_with_its_sigma_over_the_range_of_the_model() -> None
     forward = figures["figure-contours-forward"]["data"][0]
     assert (forward["x"][0], forward["x"][-1]) == (0.2, 1.8)
     assert (forward["y"][0], forward["y"][-1]) == (-0.7, 0.7)
-
-
-def test_channel_without_terms_is_named() -> None:
-    html = SurfacesSection().html(contents_of(make_results()))
-    assert "figure-contours-sideways" not in figures_of(html)
-    assert "The model has no terms for sideways slip." in html
-
-
-def test_single_speed_gives_a_sentence() -> None:
-    results = with_model(make_results(), range=Range(speed=[1.0, 1.0], yaw_rate=[-1.0, 1.0], slope=0.0))
-    assert "one speed or one yaw rate only" in SurfacesSection().html(contents_of(results))
-
-
-def test_model_without_slip_gives_a_sentence() -> None:
-    bare = Slip(basis="none", lon=[], lat=[], ang=[])
-    results = with_model(make_results(), slip=bare, parameters=[], covariance=[])
-    assert "no slip terms" in SurfacesSection().html(contents_of(results))

@@ -39,15 +39,6 @@ BayesianRegression learned(const RegressionPrior& prior, const Examples& example
   return regression;
 }
 
-void check_same(const BayesianRegression& a, const BayesianRegression& b, double tolerance) {
-  CHECK(a.mean().isApprox(b.mean(), tolerance));
-  CHECK(a.covariance().isApprox(b.covariance(), tolerance));
-  CHECK(a.examples() == b.examples());
-  const Eigen::Vector3d x(0.3, -1.0, 2.0);
-  CHECK(a.predict(x).scale == doctest::Approx(b.predict(x).scale).epsilon(tolerance));
-  CHECK(a.predict(x).freedom == b.predict(x).freedom);
-}
-
 TEST_CASE("adding one by one equals batch least squares with a prior") {
   const Examples examples = sample(1, 40);
   const BayesianRegression regression = learned(kKnown, examples);
@@ -86,62 +77,6 @@ TEST_CASE("the learned noise is that of the normal-inverse-gamma formula in one 
   const Eigen::Vector3d x(0.3, -1.0, 2.0);
   const double expected = std::sqrt(twice_b / 28.0 * (1.0 + x.dot(information.inverse() * x)));
   CHECK(regression.predict(x).scale == doctest::Approx(expected).epsilon(1e-10));
-}
-
-TEST_CASE("adding and removing an example changes nothing") {
-  for (const RegressionPrior& prior : {kKnown, kLearned}) {
-    const BayesianRegression before = learned(prior, sample(3, 30));
-    BayesianRegression after = before;
-    const Examples others = sample(4, 10);
-    for (const RegressionExample& example : others) {
-      after.add(example);
-    }
-    for (const RegressionExample& example : others) {
-      after.remove(example);
-    }
-    check_same(before, after, 1e-10);
-  }
-}
-
-TEST_CASE("removing every example gives the prior back exactly") {
-  const Examples examples = sample(5, 8);
-  BayesianRegression regression = learned(kLearned, examples);
-  for (const RegressionExample& example : examples) {
-    regression.remove(example);
-  }
-  CHECK(regression.mean().isZero());
-  CHECK(regression.examples() == 0);
-  CHECK(regression.covariance() == BayesianRegression(kLearned).covariance());
-}
-
-TEST_CASE("an example that was never added is refused and nothing changes") {
-  BayesianRegression regression = learned(kLearned, sample(6, 5));
-  const BayesianRegression before = regression;
-  CHECK_THROWS_AS(regression.remove({Eigen::Vector3d(100.0, 0.0, 0.0), 1.0, 1.0}), std::invalid_argument);
-  CHECK_THROWS_AS(regression.remove({Eigen::Vector3d(0.01, 0.0, 0.0), 1000.0, 1.0}), std::invalid_argument);
-  check_same(before, regression, 1e-15);
-  BayesianRegression empty(kKnown);
-  CHECK_THROWS_AS(empty.remove({Eigen::Vector3d::Zero(), 0.0, 1.0}), std::invalid_argument);
-}
-
-TEST_CASE("two regressions merged equal one that saw all examples") {
-  for (const RegressionPrior& prior : {kKnown, kLearned}) {
-    const Examples first = sample(7, 20), second = sample(8, 35);
-    Examples both = first;
-    both.insert(both.end(), second.begin(), second.end());
-    check_same(learned(prior, first).merged(learned(prior, second)), learned(prior, both), 1e-10);
-  }
-  CHECK_THROWS_AS(BayesianRegression(kKnown).merged(BayesianRegression(kLearned)), std::invalid_argument);
-}
-
-TEST_CASE("a sliding window knows its latest examples alone, however long it slides") {
-  SlidingRegression sliding(kLearned, 20);
-  const Examples examples = sample(9, 2000);
-  for (const RegressionExample& example : examples) {
-    sliding.add(example);
-  }
-  check_same(sliding.regression(), learned(kLearned, {examples.end() - 20, examples.end()}), 1e-9);
-  CHECK_THROWS_AS(SlidingRegression(kLearned, 0), std::invalid_argument);
 }
 
 TEST_CASE("the Student-t interval holds as often as it says, and is wider than the noise alone") {
