@@ -24,8 +24,8 @@ ObservedSlip observed(const MotionPosterior& posterior, const DisturbedTerms& te
           at.by_parameter(Eigen::all, terms.places)};
 }
 
-void check_fits(const SlipNow& now, const DisturbanceModel& law, const DisturbedTerms& terms) {
-  const std::size_t expected = terms.places.empty() ? 0 : law.candidates.size();
+void check_fits(const SlipNow& now, std::size_t candidates, const DisturbedTerms& terms) {
+  const std::size_t expected = terms.places.empty() ? 0 : candidates;
   const bool same_terms = std::ranges::all_of(
       now.of_candidates, [&](const SlipDeviation& deviation) { return deviation.size() == terms.size(); });
   if (now.of_candidates.size() != expected || !same_terms) {
@@ -50,27 +50,27 @@ void check_positive(const std::vector<double>& values, const char* what) {
 DisturbanceFilter::DisturbanceFilter(const DisturbanceSettings& settings) : weighting_(settings.weighting) {
   check_positive(settings.fractions, "the fractions");
   check_positive(settings.time_constants, "the time constants");
-  law_.candidates.push_back({0.0, 0.0, 1.0});
   std::vector<double> fractions = settings.fractions;
   fractions.insert(fractions.begin(), 0.0);
+  const std::size_t sizes = fractions.size() * fractions.size() - 1;
+  const auto others = static_cast<double>(settings.time_constants.size() * sizes);
+  bank_.add({0.0, 0.0, 1.0}, settings.white);
   for (const double time_constant : settings.time_constants) {
     for (const double linear : fractions) {
       for (const double angular : fractions) {
         if (linear > 0.0 || angular > 0.0) {
-          law_.candidates.push_back({linear, angular, time_constant});
+          bank_.add({linear, angular, time_constant}, (1.0 - settings.white) / others);
         }
       }
     }
   }
-  const auto count = static_cast<Eigen::Index>(law_.candidates.size());
-  prior_ = Eigen::VectorXd::Constant(count, (1.0 - settings.white) / static_cast<double>(count - 1));
-  prior_[0] = settings.white;
-  law_.weights = prior_;
 }
 
-DisturbanceFilter::DisturbanceFilter(DisturbanceModel law) : law_(std::move(law)) {
-  check_disturbance(law_);
-  prior_ = law_.weights;
+DisturbanceFilter::DisturbanceFilter(const DisturbanceModel& law) {
+  check_disturbance(law);
+  for (std::size_t i = 0; i < law.candidates.size(); ++i) {
+    bank_.add(law.candidates[i], law.weights[static_cast<Eigen::Index>(i)]);
+  }
 }
 
 void DisturbanceFilter::begin_with(const DisturbanceModel& law) {
@@ -78,27 +78,26 @@ void DisturbanceFilter::begin_with(const DisturbanceModel& law) {
     return a.linear == b.linear && a.angular == b.angular && a.time_constant == b.time_constant;
   };
   check_disturbance(law);
-  if (std::ranges::equal(law.candidates, law_.candidates, same)) {
-    law_.weights = law.weights;
+  if (std::ranges::equal(law.candidates, bank_.keys(), same)) {
+    bank_.begin_with(law.weights, bank_.observed());
   }
 }
 
 void DisturbanceFilter::learn(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) {
   const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
-  check_fits(now, law_, terms);
+  check_fits(now, bank_.size(), terms);
   if (terms.places.empty()) {
     return;
   }
   const ObservedSlip next = observed(posterior, terms, segment);
-  Eigen::VectorXd scores(law_.weights.size());
-  for (std::size_t i = 0; i < law_.candidates.size(); ++i) {
+  Eigen::VectorXd scores(bank_.weights().size());
+  for (std::size_t i = 0; i < bank_.size(); ++i) {
     const auto deviation = now.of_candidates[i].mean_over(next.start, next.end).first;
     const Eigen::Vector3d innovation = next.innovation - next.by_deviation * deviation;
     const double nis = normalised_square(innovation, next.noise);
     scores[static_cast<Eigen::Index>(i)] = student_log_score(nis, next.noise);  // judged by errors, as bases are
   }
-  law_.weights = updated_weights(law_.weights, scores, prior_, weighting_, observed_);
-  ++observed_;
+  bank_.learn(scores, weighting_);
 }
 
 SlipNow DisturbanceFilter::now(const MotionPosterior& posterior, std::span<const DrivenSegment> recent) const {
@@ -107,7 +106,7 @@ SlipNow DisturbanceFilter::now(const MotionPosterior& posterior, std::span<const
   if (terms.places.empty()) {
     return now;
   }
-  for (const SlipDisturbance& disturbance : law_.candidates) {
+  for (const SlipDisturbance& disturbance : bank_.keys()) {
     now.of_candidates.emplace_back(disturbance, terms);
   }
   for (const DrivenSegment& segment : recent) {
@@ -118,7 +117,7 @@ SlipNow DisturbanceFilter::now(const MotionPosterior& posterior, std::span<const
 
 void DisturbanceFilter::follow(const MotionPosterior& posterior, SlipNow& now, const DrivenSegment& segment) const {
   const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
-  check_fits(now, law_, terms);
+  check_fits(now, bank_.size(), terms);
   if (terms.places.empty()) {
     return;
   }
@@ -144,7 +143,7 @@ ExpectedPose DisturbanceFilter::predict(const MotionPosterior& posterior, const 
 ExpectedPose DisturbanceFilter::predict_at(const MotionPosterior& posterior, const SlipNow& now,
                                            const SegmentLinearization& at, const Segment& segment) const {
   const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
-  check_fits(now, law_, terms);
+  check_fits(now, bank_.size(), terms);
   return expected(posterior, now, terms, at, {segment.start, segment.end});
 }
 
@@ -152,7 +151,7 @@ std::vector<ExpectedPose> DisturbanceFilter::predict_along(const MotionPosterior
                                                            std::span<const SegmentLinearization> beginnings,
                                                            const Segment& segment) const {
   const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
-  check_fits(now, law_, terms);
+  check_fits(now, bank_.size(), terms);
   std::vector<ExpectedPose> along;
   for (const SegmentLinearization& at : beginnings) {
     const double end = &at == &beginnings.back() ? segment.end : at.path.times.back();
@@ -171,13 +170,13 @@ ExpectedPoses DisturbanceFilter::predict_both(const MotionPosterior& posterior, 
 ExpectedDeviation DisturbanceFilter::deviation(const MotionPosterior& posterior, const SlipNow& now,
                                                const std::array<double, 2>& span) const {
   const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
-  check_fits(now, law_, terms);
+  check_fits(now, bank_.size(), terms);
   ExpectedDeviation found{.places = terms.places,
                           .mean = Eigen::VectorXd::Zero(terms.size()),
                           .covariance = Eigen::MatrixXd::Zero(terms.size(), terms.size())};
   for (std::size_t i = 0; i < now.of_candidates.size(); ++i) {
     const auto [deviation, covariance] = now.of_candidates[i].mean_over(span[0], span[1]);
-    const double weight = law_.weights[static_cast<Eigen::Index>(i)];
+    const double weight = bank_.weights()[static_cast<Eigen::Index>(i)];
     found.mean += weight * deviation;
     found.covariance += weight * (covariance + deviation * deviation.transpose());
   }
@@ -196,7 +195,7 @@ ExpectedPose DisturbanceFilter::expected(const MotionPosterior& posterior, const
   for (std::size_t i = 0; i < now.of_candidates.size(); ++i) {
     const auto [deviation, covariance] = now.of_candidates[i].mean_over(start, end);
     const Eigen::Vector3d shift = h * deviation;
-    const double weight = law_.weights[static_cast<Eigen::Index>(i)];
+    const double weight = bank_.weights()[static_cast<Eigen::Index>(i)];
     mean += weight * shift;
     square += weight * (h * covariance * h.transpose() + shift * shift.transpose());
   }

@@ -45,11 +45,11 @@ void ActuatorFilter::begin_with(const Estimate& known, const CausalFilterSetting
   banks_.clear();
   const auto add = [&](std::vector<Eigen::Index> places, const std::vector<double BodyTwist::*>& parts) {
     const Estimate own{known.mean(places), known.covariance(places, places)};
-    Bank bank{.places = std::move(places), .candidates = {}, .weights = {}, .refits = {}};
+    Bank bank{.places = std::move(places), .candidates = {}, .refits = {}};
     for (const ActuatorNoise& shape : kShapes) {
-      bank.candidates.emplace_back(ChannelModel{parts, own, shape, settings.iekf});
+      bank.candidates.add(ActuatorChannel(ChannelModel{parts, own, shape, settings.iekf}),
+                          1.0 / static_cast<double>(kShapes.size()));
     }
-    bank.weights = Eigen::VectorXd::Constant(std::ssize(kShapes), 1.0 / static_cast<double>(kShapes.size()));
     banks_.push_back(std::move(bank));
   };
   add({0, 2, 4, 6, 8}, {&BodyTwist::v, &BodyTwist::vy});
@@ -57,7 +57,8 @@ void ActuatorFilter::begin_with(const Estimate& known, const CausalFilterSetting
 }
 
 /// The NIS of the actuator without a deviation. A window that all leave out weighs none of them.
-double ActuatorFilter::Bank::learn(const ChannelWindow& window, std::size_t learned) {
+double ActuatorFilter::Bank::learn(const ChannelWindow& window) {
+  const Eigen::VectorXd& weights = candidates.weights();
   Eigen::VectorXd scores(weights.size());
   double nis = 0.0;
   bool left_out = true;
@@ -68,17 +69,17 @@ double ActuatorFilter::Bank::learn(const ChannelWindow& window, std::size_t lear
     left_out = left_out && update.status == Status::Rejected;
   }
   if (left_out) {
-    return nis;
+    candidates.pass();
+  } else {
+    candidates.learn(scores, WeightingSettings{});
   }
-  const auto equal = Eigen::VectorXd::Constant(weights.size(), 1.0 / static_cast<double>(weights.size()));
-  weights = updated_weights(weights, scores, equal, WeightingSettings{}, learned);
   return nis;
 }
 
 void ActuatorFilter::Bank::begin_refit(std::size_t windows) {
   refits.clear();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const bool active = weights[static_cast<Eigen::Index>(i)] > kActive;
+    const bool active = candidates.weights()[static_cast<Eigen::Index>(i)] > kActive;
     refits.push_back(active ? std::optional(ChannelRefit(candidates[i], windows)) : std::nullopt);
   }
 }
@@ -100,6 +101,7 @@ void ActuatorFilter::Bank::end_refit() {
 /// at each window, and a thousandth of a candidate that knows a gain to 0.03 would hide that the others know it to
 /// 0.0003.
 Estimate ActuatorFilter::Bank::mixture() const {
+  const Eigen::VectorXd& weights = candidates.weights();
   const Eigen::VectorXd active = (weights.array() > kActive).select(weights, 0.0);
   const Eigen::VectorXd normalised = active / active.sum();
   Estimate all{Eigen::VectorXd::Zero(kChannelParameters),
@@ -119,7 +121,7 @@ ActuatorUpdate ActuatorFilter::learn(const InputHistory& inputs, const InputHist
   ChannelWindow window{inputs, wheel_means(wheels, start, end, kInterval)};
   ActuatorUpdate update{.nis = 0.0};
   for (Bank& bank : banks_) {
-    update.nis += bank.learn(window, learned_);
+    update.nis += bank.learn(window);
   }
   ++learned_;
   if (learned_ <= kLast || refitted_after_) {

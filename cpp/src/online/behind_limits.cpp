@@ -33,15 +33,11 @@ double gain_behind(std::span<const DrivenSegment> segments, const LimitContest& 
   for (const DrivenSegment& segment : segments) {
     const DrivenSegment limited = behind(segment, contest.limits);
     const std::array given{&segment, &limited};
-    std::array<Eigen::Vector3d, 2> innovations;
-    std::array<Eigen::Matrix3d, 2> covariances;
+    std::vector<ScoredSegment> predicted;
     for (std::size_t i = 0; i < 2; ++i) {
-      const ScoredSegment scored =
-          scores[i].score(known[i]->model, known[i]->estimate, given[i]->inputs, given[i]->segment);
-      innovations[i] = scored.innovation;
-      covariances[i] = scored.innovation_covariance;
+      predicted.push_back(scores[i].score(known[i]->model, known[i]->estimate, given[i]->inputs, given[i]->segment));
     }
-    const Eigen::VectorXd each = common_log_scores(Eigen::Vector2d(0.5, 0.5), innovations, covariances);
+    const Eigen::VectorXd each = common_log_scores(Eigen::Vector2d(0.5, 0.5), predicted);
     sum += each[1] - each[0];
   }
   return sum;

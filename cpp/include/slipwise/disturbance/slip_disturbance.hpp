@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "slipwise/disturbance/slip_deviation.hpp"
+#include "slipwise/filter/hypothesis_bank.hpp"
 #include "slipwise/filter/motion_posterior.hpp"
-#include "slipwise/filter/weighting.hpp"
 #include "slipwise/motion/disturbance_model.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
@@ -58,7 +58,7 @@ class DisturbanceFilter {
   DisturbanceFilter() = default;  ///< no slip disturbance
   /// As it was learned before, to predict with.
   /// \throws std::invalid_argument when the law's numbers contradict each other.
-  explicit DisturbanceFilter(DisturbanceModel law);
+  explicit DisturbanceFilter(const DisturbanceModel& law);
 
   /// Weights the candidates by `segment`, predicted from `now`, which is as `predict` takes it.
   /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
@@ -89,25 +89,23 @@ class DisturbanceFilter {
   ExpectedDeviation deviation(const MotionPosterior& posterior, const SlipNow& now,
                               const std::array<double, 2>& span) const;
 
-  const DisturbanceModel& law() const { return law_; }
+  DisturbanceModel law() const { return {bank_.keys(), bank_.weights()}; }
   /// Begins with the weights of a law that was learned before; nothing changes where its candidates are others.
   void begin_with(const DisturbanceModel& law);
 
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.law_, self.weighting_, self.prior_, self.observed_);
-    check_disturbance(self.law_);
+    a(self.bank_, self.weighting_);
+    check_disturbance(self.law());
   }
 
  private:
   ExpectedPose expected(const MotionPosterior& posterior, const SlipNow& now, const DisturbedTerms& terms,
                         const SegmentLinearization& at, const std::array<double, 2>& span) const;
 
-  DisturbanceModel law_;
+  HypothesisBank<SlipDisturbance> bank_;
   WeightingSettings weighting_;
-  Eigen::VectorXd prior_;     ///< prior weights
-  std::size_t observed_ = 0;  ///< segments weighted by
 };
 
 }  // namespace slipwise

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace slipwise {
 
@@ -31,5 +32,17 @@ double student_log_score(double nis, const Eigen::Matrix3d& covariance);
 /// \throws std::invalid_argument when there is not one of each per weight.
 Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, std::span<const Eigen::Vector3d> innovations,
                                   std::span<const Eigen::Matrix3d> covariances);
+
+/// The same of predictions, each of which has an `innovation` and an `innovation_covariance`.
+template <class Predictions>
+Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, const Predictions& predictions) {
+  std::vector<Eigen::Vector3d> innovations;
+  std::vector<Eigen::Matrix3d> covariances;
+  for (const auto& each : predictions) {
+    innovations.push_back(each.innovation);
+    covariances.push_back(each.innovation_covariance);
+  }
+  return common_log_scores(weights, innovations, covariances);
+}
 
 }  // namespace slipwise

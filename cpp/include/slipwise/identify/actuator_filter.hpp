@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "slipwise/filter/causal_filter.hpp"
-#include "slipwise/filter/weighting.hpp"
+#include "slipwise/filter/hypothesis_bank.hpp"
 #include "slipwise/identify/actuator_channel.hpp"
 #include "slipwise/identify/channel_refit.hpp"
 
@@ -62,11 +62,10 @@ class ActuatorFilter {
  private:
   struct Bank {
     std::vector<Eigen::Index> places;  ///< of its parameters among the model's
-    std::vector<ActuatorChannel> candidates;
-    Eigen::VectorXd weights;
+    HypothesisBank<ActuatorChannel> candidates;
     std::vector<std::optional<ChannelRefit>> refits;  ///< of the candidates; none of those without weight
 
-    double learn(const ChannelWindow& window, std::size_t learned);
+    double learn(const ChannelWindow& window);
     void begin_refit(std::size_t windows);
     bool refit_slice(std::span<const ChannelWindow> past);
     void end_refit();
