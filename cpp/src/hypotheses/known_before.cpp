@@ -16,8 +16,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kFavoured = 0.9;  // weight of the structure that was the best before
-
 std::size_t place_of(const MotionPosterior& model) {
   if (model.structure == Structure::Direct) {
     return kDirect;
@@ -69,7 +67,7 @@ std::vector<std::pair<InputHistory, Segment>> steady_segments(const ReferenceSpe
 SurfaceMemory ModelAverage::completed(const NamedMemory& some, bool same_robot) const {
   SurfaceMemory all = remember();
   all.observed = some.memory.observed;
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(prior_.size());
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(std::ssize(places_));
   for (std::size_t i = 0; i < all.slips.size(); ++i) {
     const auto named = std::ranges::find(some.bases, filters_[i].model().basis().name());
     if (named == some.bases.end()) {
@@ -92,14 +90,15 @@ SurfaceMemory ModelAverage::completed(const NamedMemory& some, bool same_robot) 
     weights[static_cast<Eigen::Index>(i)] = some.memory.weights[static_cast<Eigen::Index>(place)];
     all.slips[i] = std::move(slip);
   }
-  all.weights = weights.sum() > 0.0 ? Eigen::VectorXd(weights / weights.sum()) : prior_;
+  all.weights = weights.sum() > 0.0 ? Eigen::VectorXd(weights / weights.sum())
+                                    : Eigen::VectorXd(filters_.prior().head(weights.size()));
   return all;
 }
 
 void ModelAverage::know_robot(const MotionModel& known_model, const Estimate& known) {
   const std::vector<ParameterInfo> names = after_slip(model_);
   const auto size = std::ssize(names);
-  for (CausalFilter& filter : filters_) {
+  for (CausalFilter& filter : filters_.keys()) {
     const Estimate& now = filter.estimate();
     filter.know_robot(
         known_by_name(names, {now.mean.tail(size), now.covariance.bottomRightCorner(size, size)}, known_model, known));
@@ -108,8 +107,6 @@ void ModelAverage::know_robot(const MotionModel& known_model, const Estimate& kn
 
 void ModelAverage::begin_on(const SurfaceMemory& surface, double seconds, double segment_length) {
   filters_ = filters_on(surface, 0.0);
-  weights_ = surface.weights;
-  observed_ = surface.observed;
   const ReferenceSpeeds speeds = surface.slips.back().speeds;
   speeds_.begin_with(speeds, seconds);
   for (auto& [inputs, segment] : steady_segments(speeds, segment_length)) {
@@ -128,16 +125,6 @@ Surface MotionHypotheses::completed(const KnownSurface& known, std::size_t place
     }
   }
   return surface;
-}
-
-void MotionHypotheses::favour(Structure structure) {
-  const double others = 1.0 - weight(structure);
-  for (const Structure each : structures()) {
-    weights_[static_cast<std::size_t>(each)] *= others > 0.0 ? (1.0 - kFavoured) / others : 1.0;
-    evidence_[static_cast<std::size_t>(each)] = 0.0;
-  }
-  weights_[static_cast<std::size_t>(structure)] = others > 0.0 ? kFavoured : 1.0;
-  evidence_[static_cast<std::size_t>(structure)] = std::log(kFavoured / (1.0 - kFavoured));
 }
 
 /// Lags behind limits of the drive are not those that are learned without: of such a model, these begin again.
@@ -182,9 +169,7 @@ void MotionHypotheses::begin_with(const KnownBefore& known, double segment_lengt
   bank_.know(std::move(surfaces), known.labels);
   constexpr std::array kOwn{Structure::Joint, Structure::Direct, Structure::Cascaded};
   begun_with_ = kOwn[place];
-  if (tried(kOwn[place])) {
-    favour(kOwn[place]);
-  }
+  favour_known();
 }
 
 std::vector<std::string> MotionHypotheses::add_surfaces(const DisturbanceModel& law, const KnownBefore& other) {

@@ -2,6 +2,7 @@
 // What has to hold of averages, surfaces and structures that are loaded.
 #include <algorithm>
 #include <array>
+#include <functional>
 
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/archive/same.hpp"
@@ -44,10 +45,10 @@ void ChangeDetector::check_loaded(const ChangeDetector& made, Eigen::Index chang
 void SurfaceEvidence::check_loaded(const MotionModel& model) const {
   const Eigen::Index size = model.size();
   require(posterior_.estimate.mean.size() == size && posterior_.prior_std.size() == size && are_places(places_, size) &&
-              !under_.empty(),
+              under_.size() > 0,
           "the evidence for a surface is of other parameters");
   const Eigen::Index all = size + std::ssize(places_);
-  for (const Under& under : under_) {
+  for (const Under& under : under_.keys()) {
     require(under.nominal.size() == std::ssize(places_) && under.state.size() == all &&
                 under.covariance.rows() == all && under.covariance.cols() == all && under.time_constant > 0.0,
             "the evidence for a surface does not fit together");
@@ -68,7 +69,7 @@ void ModelAverage::check_memory(const SurfaceMemory& memory) const {
 void ModelAverage::check_loaded(const ModelAverage& made) const {
   const Eigen::Index size = made.model_.size();
   require(archive::same(model_, made.model_) && places_ == made.places_ && archive::same(settings_, made.settings_) &&
-              archive::same(prior_, made.prior_) && changing_ == made.changing_ && are_weights(weights_),
+              changing_ == made.changing_ && are_weights(filters_.weights()),
           "an average is of other bases or settings");
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     filters_[i].check_loaded(made.filters_[i % made.filters_.size()]);
@@ -90,15 +91,12 @@ void ModelAverage::check_loaded(const ModelAverage& made) const {
     return;
   }
   const std::size_t sides = trial_->candidates.size();
-  require(sides > 0 && undecided_ == 0 && trial_->evidence.size() == sides && trial_->weights.size() == sides &&
-              trial_->observed.size() == sides && trial_->log_odds.size() == std::ssize(trial_->candidates) &&
-              !trial_->log_odds.array().isNaN().any(),
-          "a trial of surfaces does not fit together");
-  std::ranges::for_each(trial_->evidence, [&](const SurfaceEvidence& each) { each.check_loaded(model_); });
-  require(std::ranges::all_of(
-              trial_->weights,
-              [&](const Eigen::VectorXd& each) { return each.size() == prior_.size() && are_weights(each); }),
-          "a trial of surfaces has other bases");
+  require(sides > 0 && undecided_ == 0 && trial_->sides.size() == sides, "a trial of surfaces does not fit together");
+  for (const SurfaceSide& side : trial_->sides.keys()) {
+    side.evidence.check_loaded(model_);
+    side.bases.check_sizes(places_.size());
+    require(are_weights(side.bases.weights()), "a trial of surfaces has other bases");
+  }
 }
 
 void SurfaceBank::check_loaded(const SurfaceBank& made,
@@ -137,7 +135,7 @@ void CascadedModel::check_loaded(const CascadedModel& made) const {
 void MotionHypotheses::check_loaded(const MotionHypotheses& made) const {
   require(archive::same(settings_, made.settings_) && direct_bases_ == made.direct_bases_ &&
               direct_.has_value() == made.direct_.has_value() && cascaded_.has_value() == made.cascaded_.has_value() &&
-              are_weights(weights_),
+              are_weights(tried_.weights()),
           "the learned terms are not those of the settings");
   joint_.check_loaded(made.joint_);
   if (direct_) {
@@ -151,12 +149,12 @@ void MotionHypotheses::check_loaded(const MotionHypotheses& made) const {
     return structure == Structure::Joint || structure == Structure::Baseline ||
            (structure == Structure::Direct && direct_) || (structure == Structure::Cascaded && cascaded_);
   };
-  for (std::size_t i = 0; i < kStructures; ++i) {
-    require(tried_[i] ? there(static_cast<Structure>(i)) : weights_[i] == 0.0,
-            "a structure is tried that is not there");
-  }
-  require(tried(Structure::Joint) && predicted_.size() <= to_predict_.size() && std::ranges::all_of(to_predict_, there),
-          "a segment is predicted by a structure that is not there");
+  require(std::ranges::all_of(tried_.keys(), there) &&
+              std::ranges::adjacent_find(tried_.keys(), std::greater_equal()) == tried_.keys().end(),
+          "a structure is tried that is not there");
+  require(
+      tried(Structure::Joint) && predicted_.size() <= to_predict_.size() && (!segment_ || to_predict_ == tried_.keys()),
+      "a segment is predicted by a structure that is not there");
 }
 
 }  // namespace slipwise

@@ -113,13 +113,12 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ac
                            const CausalFilterSettings& filter, const ModelAverageSettings& settings)
     : model_(averaged_basis(std::move(name), bases), learned),
       settings_(settings),
-      prior_(prior_weights(bases, settings.largest_basis)),
-      weights_(prior_),
       changing_(changing_terms(model_.basis())),
       detector_(settings.change, change_kinds(model_.basis(), changing_)) {
+  const Eigen::VectorXd prior = prior_weights(bases, settings.largest_basis);
   for (const Basis& basis : bases) {
-    filters_.emplace_back(MotionModel(basis, learned), filter);
-    places_.push_back(places_of(filters_.back().model(), model_));
+    filters_.add(CausalFilter(MotionModel(basis, learned), filter), prior[std::ssize(places_)]);
+    places_.push_back(places_of(filters_.keys().back().model(), model_));
   }
 }
 
@@ -131,9 +130,8 @@ ModelAverage& ModelAverage::operator=(ModelAverage&&) noexcept = default;
 ModelAverage::~ModelAverage() = default;
 
 void ModelAverage::check_sizes() const {
-  const auto bases = static_cast<std::size_t>(prior_.size());
-  bool fit = bases > 0 && places_.size() == bases && filters_.size() == sides() * bases &&
-             static_cast<std::size_t>(weights_.size()) == filters_.size();
+  const std::size_t bases = places_.size();
+  bool fit = bases > 0 && filters_.size() == sides() * bases;
   for (std::size_t i = 0; fit && i < filters_.size(); ++i) {
     fit = std::ssize(places_[i % bases]) == filters_[i].model().size() &&
           filters_[i].estimate().mean.size() == filters_[i].model().size();
@@ -174,7 +172,7 @@ bool ModelAverage::advance() {
 }
 
 bool ModelAverage::refit_slice() {
-  return std::ranges::any_of(filters_, [](CausalFilter& filter) { return filter.refit_slice(); });
+  return std::ranges::any_of(filters_.keys(), [](CausalFilter& filter) { return filter.refit_slice(); });
 }
 
 void ModelAverage::look_for_change() {
@@ -206,20 +204,8 @@ void ModelAverage::reweigh() {
     return;
   }
   const std::vector<IekfUpdate>& updates = present(learning_).updates;
-  std::vector<Eigen::Vector3d> innovations;
-  std::vector<Eigen::Matrix3d> covariances;
-  for (const IekfUpdate& update : updates) {
-    innovations.push_back(update.innovation);
-    covariances.push_back(update.innovation_covariance);
-  }
-  Eigen::Index heaviest = 0;
-  weights_.maxCoeff(&heaviest);
-  update_ = updates[static_cast<std::size_t>(heaviest)];
-  const Eigen::Index sides = weights_.size() / prior_.size();
-  const Eigen::VectorXd prior = prior_.replicate(sides, 1) / static_cast<double>(sides);
-  weights_ = updated_weights(weights_, common_log_scores(weights_, innovations, covariances), prior,
-                             settings_.weighting, observed_);
-  ++observed_;
+  update_ = updates[filters_.heaviest()];
+  filters_.learn(common_log_scores(filters_.weights(), updates), settings_.weighting);
   if (undecided_ > 0) {
     --undecided_;
     if (undecided_ == 0) {
@@ -232,7 +218,7 @@ void ModelAverage::reweigh() {
 /// weights follow a change at once, and would hide it.
 ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segment& segment) {
   const ChangeSettings& change = settings_.change;
-  if (!change.detect || far_noisier(segment, filters_.front().noise_scale())) {
+  if (!change.detect || far_noisier(segment, filters_[0].noise_scale())) {
     return {};
   }
   before_.push_back(state());
@@ -242,7 +228,7 @@ ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segme
   const AverageState& known = before_.front();
   const auto at = linearize_segment(model_, known.estimate.mean, inputs, segment);
   const Eigen::Matrix3d covariance =
-      prediction_covariance(at, known.estimate.covariance, filters_.front().noise().shape, known.noise_scale);
+      prediction_covariance(at, known.estimate.covariance, filters_[0].noise().shape, known.noise_scale);
   const Eigen::VectorXd nominal = slip_prior_std(model_.basis(), speeds_.reference(), change.fraction);
   const Eigen::Matrix<double, 3, Eigen::Dynamic> by_change =
       at.by_parameter(Eigen::all, changing_) * nominal(changing_).asDiagonal();
@@ -254,42 +240,48 @@ ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segme
 void ModelAverage::branch() {
   before_.clear();
   detector_.restart();
-  const std::vector<CausalFilter> as_before = filters_;
-  for (CausalFilter& filter : filters_) {
-    filter.forget(settings_.change.forget);
+  std::vector<std::size_t> twice = side_places(0);
+  twice.insert(twice.end(), twice.begin(), twice.end());
+  filters_ = filters_.chosen(twice);
+  Eigen::VectorXd weights = (1.0 - kChanged) * filters_.weights();
+  for (const std::size_t i : side_places(0)) {
+    filters_[i].forget(settings_.change.forget);
+    weights[static_cast<Eigen::Index>(i)] = kChanged * filters_.weights()[static_cast<Eigen::Index>(i)];
   }
-  filters_.insert(filters_.end(), as_before.begin(), as_before.end());
-  const Eigen::VectorXd weights = weights_;
-  weights_.resize(2 * weights.size());
-  weights_ << kChanged * weights, (1.0 - kChanged) * weights;
+  filters_.begin_with(weights, filters_.observed());
   undecided_ = settings_.change.trial;
 }
 
 void ModelAverage::forget(double fraction) {
-  for (CausalFilter& filter : filters_) {
+  for (CausalFilter& filter : filters_.keys()) {
     filter.forget(fraction);
   }
 }
 
 /// Keeps the models of the terrain that predicted better.
 void ModelAverage::resolve() {
-  const auto bases = static_cast<std::ptrdiff_t>(places_.size());
-  const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
+  const Eigen::VectorXd weights = basis_weights();
+  const bool changed = filters_.weights().head(weights.size()).sum() > filters_.weights().tail(weights.size()).sum();
   change_.alarm = changed && !announced_;
   moved_ = changed;
-  observed_ = changed ? 0 : observed_;  // of a new terrain, few data have spoken
-  weights_ = basis_weights();
-  filters_.erase(changed ? filters_.begin() + bases : filters_.begin(),
-                 changed ? filters_.end() : filters_.begin() + bases);
+  filters_ = filters_.chosen(side_places(changed ? 0 : 1));
+  filters_.begin_with(weights, changed ? 0 : filters_.observed());  // of a new terrain, few data have spoken
+}
+
+std::vector<std::size_t> ModelAverage::side_places(std::size_t side) const {
+  std::vector<std::size_t> places(places_.size());
+  std::iota(places.begin(), places.end(), side * places_.size());
+  return places;
 }
 
 Eigen::VectorXd ModelAverage::basis_weights() const {
   const auto bases = static_cast<Eigen::Index>(places_.size());
-  return weights_.reshaped(bases, weights_.size() / bases).rowwise().sum();
+  const Eigen::VectorXd& weights = filters_.weights();
+  return weights.reshaped(bases, weights.size() / bases).rowwise().sum();
 }
 
 AverageState ModelAverage::state() const {
-  AverageState state = state_of(filters_, weights_);
+  AverageState state = state_of(filters_.keys(), filters_.weights());
   state.variance_ratio = variance_ratio();
   state.weights = basis_weights();
   return state;
@@ -333,7 +325,7 @@ Eigen::VectorXd ModelAverage::variance_ratio() const {
     if (places.empty()) {
       continue;
     }
-    const double weight = weights_[static_cast<Eigen::Index>(i)];
+    const double weight = filters_.weights()[static_cast<Eigen::Index>(i)];
     const Estimate estimate = filters_[i].reported();
     having(places).array() += weight;
     mean(places) += weight * estimate.mean;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -19,6 +18,7 @@ SLIPWISE_TUNING(kDirectPrior, 1.4);  // prior weights, others having 1: of what 
 SLIPWISE_TUNING(kBaselinePrior, 2.0);  // the same
 SLIPWISE_TUNED std::array<double, kStructures> kPrior{1.0, 1.0, 1.0, kDirectPrior, kBaselinePrior};
 SLIPWISE_TUNING(kRefutedOdds, 1e3);
+constexpr double kFavoured = 0.9;                // weight of the structure that was the best before
 const double kRefuted = std::log(kRefutedOdds);  // tempered log odds against a structure from which on it is dropped
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
@@ -69,20 +69,17 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
              settings.filter, settings.average),
       baseline_(settings.filter.noise),
       bank_(settings.average.surfaces) {
-  const auto attempt = [&](Structure structure) {
-    tried_[index(structure)] = true;
-    weights_[index(structure)] = kPrior[index(structure)];
-  };
+  const auto attempt = [&](Structure structure) { tried_.add(structure, kPrior[index(structure)]); };
   attempt(Structure::Joint);
-  if (settings.baseline) {
-    attempt(Structure::Baseline);
-  }
   if (settings.direct && settings.dynamics) {
     attempt(Structure::Direct);
     direct_bases_ = few_bases(settings.bases);
     direct_.emplace("auto", chosen(settings.bases, direct_bases_),
                     ActuatorParameters{.sensor_extrinsics = settings.sensor_extrinsics, .delays = true},
                     settings.filter, settings.average);
+  }
+  if (settings.baseline) {
+    attempt(Structure::Baseline);
   }
   if (settings.cascaded && settings.dynamics) {
     cascaded_.emplace(
@@ -91,37 +88,33 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
                      settings.filter, settings.average),
         settings.filter);
   }
-  const double total = std::accumulate(weights_.begin(), weights_.end(), 0.0);
-  std::ranges::for_each(weights_, [&](double& weight) { weight /= total; });
+  tried_.normalise();
 }
 
-std::vector<Structure> MotionHypotheses::structures() const {
-  std::vector<Structure> all;
-  for (std::size_t i = 0; i < kStructures; ++i) {
-    if (tried_[i]) {
-      all.push_back(static_cast<Structure>(i));
-    }
+std::array<double, kStructures> MotionHypotheses::weights() const {
+  std::array<double, kStructures> all{};
+  for (std::size_t i = 0; i < tried_.size(); ++i) {
+    all.at(index(tried_[i])) = tried_.weights()[static_cast<Eigen::Index>(i)];
   }
   return all;
 }
 
 /// Where wheel speeds come beside the commands, with the weight that it would have had from the start.
 void MotionHypotheses::join_cascade() {
-  double prior = 0.0;
-  double now = 0.0;
-  for (const Structure structure : structures()) {
-    prior += kPrior[index(structure)];
-    now += weight(structure);
-  }
-  const double whole = prior + kPrior[index(Structure::Cascaded)];
-  for (double& weight : weights_) {
-    weight *= prior / whole / now;
-  }
-  tried_[index(Structure::Cascaded)] = true;
-  weights_[index(Structure::Cascaded)] = kPrior[index(Structure::Cascaded)] / whole;
-  evidence_[index(Structure::Cascaded)] = evidence_[index(Structure::Joint)];
+  std::vector<std::size_t> order(tried_.size() + 1);
+  std::iota(order.begin(), order.end(), 0);
+  std::rotate(order.begin() + 1, order.end() - 1, order.end());  // behind the joint model, which is the first
+  tried_.join(Structure::Cascaded, kPrior[index(Structure::Cascaded)], tried_.evidence()[0]);
+  tried_ = tried_.chosen(order);
   if (begun_with_ == Structure::Cascaded) {
-    favour(Structure::Cascaded);
+    favour_known();
+  }
+}
+
+/// What was the best before begins as such, once it is tried.
+void MotionHypotheses::favour_known() {
+  if (begun_with_ && tried(*begun_with_)) {
+    tried_.favour(tried_.place_of(*begun_with_), kFavoured);
   }
 }
 
@@ -160,7 +153,7 @@ void MotionHypotheses::start(const DrivenSegment& segment, bool wheels_known) {
     join_cascade();
   }
   segment_ = segment;
-  to_predict_ = structures();
+  to_predict_ = tried_.keys();
   predicted_.clear();
   std::ranges::for_each(updates_, [](StructureUpdate& update) { update.refitted = false; });
 }
@@ -224,48 +217,26 @@ void MotionHypotheses::update_weights() {
     updates_[index(Structure::Cascaded)].change = cascaded_->change();
     updates_[index(Structure::Cascaded)].refitted = cascaded_->refitted();
   }
-  const auto count = std::ssize(to_predict_);
-  Eigen::VectorXd weights(count);
-  Eigen::VectorXd full(count);
-  Eigen::VectorXd prior(count);
-  std::vector<Eigen::Vector3d> innovations;
-  std::vector<Eigen::Matrix3d> covariances;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const auto place = static_cast<std::size_t>(i);
-    const Structure structure = to_predict_[place];
-    weights[i] = weight(structure);
-    full[i] = is_simple(structure) ? 0.0 : weights[i];
-    prior[i] = kPrior[index(structure)];
-    innovations.push_back(predicted_[place].innovation);
-    covariances.push_back(predicted_[place].innovation_covariance);
+  Eigen::VectorXd full = tried_.weights();
+  for (std::size_t i = 0; i < tried_.size(); ++i) {
+    full[static_cast<Eigen::Index>(i)] *= is_simple(tried_[i]) ? 0.0 : 1.0;
   }
-  const Eigen::VectorXd scores = common_log_scores(full / full.sum(), innovations, covariances);
   WeightingSettings weighting = settings_.average.weighting;
   weighting.learning_rate *= kPatience;
-  const Eigen::VectorXd updated = updated_weights(weights, scores, prior / prior.sum(), weighting, count_);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const std::size_t structure = index(to_predict_[static_cast<std::size_t>(i)]);
-    weights_[structure] = updated[i];
-    evidence_[structure] += weighting.learning_rate * scores[i];
-  }
+  tried_.learn(common_log_scores(full / full.sum(), predicted_), weighting);
 }
 
 /// Simpler structures that predict far worse than another.
 void MotionHypotheses::drop_refuted() {
-  double most = -std::numeric_limits<double>::infinity();
-  for (const Structure structure : structures()) {
-    most = std::max(most, evidence_[index(structure)]);
-  }
-  double total = 0.0;
-  for (const Structure structure : structures()) {
-    const std::size_t i = index(structure);
-    if (is_simple(structure) && most - evidence_[i] > kRefuted) {
-      tried_[i] = false;
-      weights_[i] = 0.0;
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < tried_.size(); ++i) {
+    const double behind = tried_.evidence().maxCoeff() - tried_.evidence()[static_cast<Eigen::Index>(i)];
+    if (!is_simple(tried_[i]) || !(behind > kRefuted)) {
+      left.push_back(i);
     }
-    total += weights_[i];
   }
-  std::ranges::for_each(weights_, [&](double& weight) { weight /= total; });
+  tried_ = tried_.chosen(left);
+  tried_.normalise();
 }
 
 std::shared_ptr<const MotionPosterior> MotionHypotheses::posterior_of(const ModelAverage& average,
@@ -315,12 +286,10 @@ std::shared_ptr<const MotionPosterior> MotionHypotheses::of(Structure structure)
                                                                  .structure = Structure::Baseline});
 }
 
-std::shared_ptr<const MotionPosterior> MotionHypotheses::posterior() const {
-  return of(static_cast<Structure>(std::ranges::max_element(weights_) - weights_.begin()));
-}
+std::shared_ptr<const MotionPosterior> MotionHypotheses::posterior() const { return of(tried_[tried_.heaviest()]); }
 
 std::shared_ptr<const MotionPosterior> MotionHypotheses::slip_posterior() const {
-  std::array<double, kStructures> slipping = weights_;
+  std::array<double, kStructures> slipping = weights();
   slipping[index(Structure::Baseline)] = 0.0;
   return of(static_cast<Structure>(std::ranges::max_element(slipping) - slipping.begin()));
 }

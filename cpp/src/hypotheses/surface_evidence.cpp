@@ -28,14 +28,13 @@ SurfaceEvidence::SurfaceEvidence(const MotionModel& model, SurfacePosterior post
   places_ = terms.places;
   const Eigen::Index size = model.size();
   const auto consider = [&](const SlipDisturbance& disturbance, double weight) {
-    Under under{.log_weight = std::log(weight),
-                .time_constant = disturbance.time_constant,
+    Under under{.time_constant = disturbance.time_constant,
                 .nominal = terms.variances(disturbance),
                 .state = Eigen::VectorXd::Zero(size + terms.size()),
                 .covariance = Eigen::MatrixXd::Zero(size + terms.size(), size + terms.size())};
     under.covariance.topLeftCorner(size, size) = posterior_.estimate.covariance;
     under.covariance.diagonal().tail(terms.size()) = under.nominal;
-    under_.push_back(std::move(under));
+    under_.add(std::move(under), weight, std::log(weight));
   };
   for (std::size_t i = 0; i < law.candidates.size(); ++i) {
     const double weight = law.weights[static_cast<Eigen::Index>(i)];
@@ -43,7 +42,7 @@ SurfaceEvidence::SurfaceEvidence(const MotionModel& model, SurfacePosterior post
       consider(law.candidates[i], weight);
     }
   }
-  if (under_.empty()) {
+  if (under_.size() == 0) {
     consider({.linear = 0.0, .angular = 0.0, .time_constant = 1.0}, 1.0);
   }
 }
@@ -58,45 +57,37 @@ void SurfaceEvidence::Under::decay(double seconds) {
   covariance.diagonal().tail(terms) += (1.0 - keep * keep) * nominal;
 }
 
-void SurfaceEvidence::Under::learn(const Eigen::Vector3d& innovation,
-                                   const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_state,
-                                   const Eigen::Matrix3d& noise) {
+double SurfaceEvidence::Under::learn(const Eigen::Vector3d& innovation,
+                                     const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_state,
+                                     const Eigen::Matrix3d& noise) {
   const Eigen::Vector3d left = innovation - by_state * state;
   const Eigen::Matrix3d expected = innovation_covariance(covariance, by_state, noise);
   const double nis = normalised_square(left, expected);
-  log_weight += student_log_score(nis, expected);
   const double heavier = std::max(1.0, (kTailDegrees + nis) / (kTailDegrees + 3.0));  // an outlier teaches less
   state += linear_update(covariance, by_state, heavier * noise) * left;
-}
-
-double SurfaceEvidence::log_total() const {
-  const double most = std::ranges::max_element(under_, {}, &Under::log_weight)->log_weight;
-  double sum = 0.0;
-  for (const Under& under : under_) {
-    sum += std::exp(under.log_weight - most);
-  }
-  return most + std::log(sum);
+  return student_log_score(nis, expected);
 }
 
 double SurfaceEvidence::add(const MotionModel& model, const InputHistory& inputs, const Segment& segment) {
   const double middle = (segment.start + segment.end) / 2.0;
   const double passed = middle > time_ ? middle - time_ : std::numeric_limits<double>::infinity();
   time_ = middle;
-  const double before = log_total();
+  const double before = under_.log_evidence();
   const Eigen::Index size = model.size();
-  const auto heaviest = std::ranges::max_element(under_, {}, &Under::log_weight);
-  const Eigen::VectorXd away = heaviest->state.head(size);
+  const Eigen::VectorXd away = under_[under_.heaviest()].state.head(size);
   const auto at = linearize_segment(model, posterior_.estimate.mean + away, inputs, segment);
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_state(3, size + std::ssize(places_));
   by_state.leftCols(size) = at.by_parameter;
   by_state.rightCols(std::ssize(places_)) = at.by_parameter(Eigen::all, places_);
   const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, posterior_.noise, posterior_.noise_scale);
   const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector() + at.by_parameter * away;
-  for (Under& under : under_) {
-    under.decay(passed);
-    under.learn(innovation, by_state, noise);
+  Eigen::VectorXd scores(under_.weights().size());
+  for (std::size_t i = 0; i < under_.size(); ++i) {
+    under_[i].decay(passed);
+    scores[static_cast<Eigen::Index>(i)] = under_[i].learn(innovation, by_state, noise);
   }
-  return log_total() - before;
+  under_.weigh(scores);
+  return under_.log_evidence() - before;
 }
 
 }  // namespace slipwise

@@ -18,11 +18,6 @@ constexpr std::size_t kProbeEvery = 4;  // segments from one to the next
 
 }  // namespace
 
-Eigen::VectorXd SurfaceTrial::probabilities() const {
-  const Eigen::ArrayXd odds = (log_odds.array() - log_odds.maxCoeff()).exp();
-  return odds / odds.sum();
-}
-
 /// Keeps what was known before a segment, as long as one surface is driven on.
 void ModelAverage::note_recent() {
   if (!settings_.surfaces.remember || trial_) {
@@ -33,7 +28,7 @@ void ModelAverage::note_recent() {
   if (std::ssize(recent_) > settings_.change.longest) {
     recent_.pop_front();
   }
-  if (observed_ % kProbeEvery == 0) {
+  if (filters_.observed() % kProbeEvery == 0) {
     probes_.push_back({now.inputs, now.segment, {}, {}});
   }
   if (probes_.size() > kProbes) {
@@ -44,18 +39,17 @@ void ModelAverage::note_recent() {
 SurfaceMemory ModelAverage::remember() const {
   const std::size_t bases = places_.size();
   std::size_t best = 0;
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(prior_.size());
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(std::ssize(places_));
   for (std::size_t side = 0; side < sides(); ++side) {
-    const Eigen::VectorXd part = weights_.segment(static_cast<Eigen::Index>(side * bases), prior_.size());
+    const Eigen::VectorXd part = filters_.weights().segment(static_cast<Eigen::Index>(side * bases), weights.size());
     if (part.sum() > weights.sum()) {
       best = side;
       weights = part;
     }
   }
-  SurfaceMemory memory{.slips = {}, .weights = weights / weights.sum(), .observed = observed_};
-  if (trial_) {
-    memory.observed = present(trial_).observed[best];
-  }
+  SurfaceMemory memory{.slips = {},
+                       .weights = weights / weights.sum(),
+                       .observed = trial_ ? trial_->sides[best].bases.observed() : filters_.observed()};
   for (std::size_t i = 0; i < bases; ++i) {
     memory.slips.push_back(filters_[best * bases + i].surface());
   }
@@ -75,17 +69,17 @@ void ModelAverage::mark_parting(double since) {
   parting_ = first < recent_.size() ? recent_[first].memory : remember();
 }
 
-std::vector<CausalFilter> ModelAverage::filters_on(const SurfaceMemory& surface, double drift) const {
-  const std::size_t bases = places_.size();
-  std::vector<CausalFilter> filters(filters_.begin(), filters_.begin() + static_cast<std::ptrdiff_t>(bases));
-  for (std::size_t i = 0; i < bases; ++i) {
+HypothesisBank<CausalFilter> ModelAverage::filters_on(const SurfaceMemory& surface, double drift) const {
+  HypothesisBank<CausalFilter> filters = filters_.chosen(side_places(0));
+  for (std::size_t i = 0; i < filters.size(); ++i) {
     filters[i].go_on_with(surface.slips[i], drift);
   }
+  filters.begin_with(surface.weights, surface.observed);
   return filters;
 }
 
 AverageState ModelAverage::state_on(const SurfaceMemory& surface) const {
-  AverageState state = state_of(filters_on(surface, 0.0), surface.weights);
+  AverageState state = state_of(filters_on(surface, 0.0).keys(), surface.weights);
   state.weights = surface.weights;
   return state;
 }
@@ -93,13 +87,13 @@ AverageState ModelAverage::state_on(const SurfaceMemory& surface) const {
 SurfacePosterior ModelAverage::posterior_of(const AverageState& state) const {
   return {.estimate = state.estimate,
           .prior_std = state.prior_std,
-          .noise = filters_.front().noise().shape,
+          .noise = filters_[0].noise().shape,
           .noise_scale = state.noise_scale};
 }
 
 /// Bases are weighted as on the surfaces that are known.
 SurfaceMemory ModelAverage::new_surface(std::span<const SurfaceMemory> known, const SurfaceMemory& present) const {
-  SurfaceMemory fresh{.slips = {}, .weights = Eigen::VectorXd::Zero(prior_.size())};
+  SurfaceMemory fresh{.slips = {}, .weights = Eigen::VectorXd::Zero(std::ssize(places_))};
   std::vector<SurfaceMemory> all(known.begin(), known.end());
   if (all.empty()) {
     all.push_back(present);
@@ -119,10 +113,7 @@ SurfaceMemory ModelAverage::new_surface(std::span<const SurfaceMemory> known, co
 ModelAverage::Side ModelAverage::side_of(const SurfaceCandidate& candidate, std::span<const SurfaceMemory> known,
                                          std::size_t first) const {
   if (candidate.kind == SurfaceCandidate::Kind::Present) {
-    return {.filters = filters_,
-            .weights = weights_,
-            .observed = observed_,
-            .state = first < recent_.size() ? recent_[first].state : state()};
+    return {.filters = filters_, .state = first < recent_.size() ? recent_[first].state : state()};
   }
   SurfaceMemory start = present(parting_);
   double drift = 0.0;
@@ -132,27 +123,23 @@ ModelAverage::Side ModelAverage::side_of(const SurfaceCandidate& candidate, std:
   } else if (candidate.kind == SurfaceCandidate::Kind::New) {
     start = new_surface(known, present(parting_));
   }
-  Side side{.filters = filters_on(start, drift), .weights = start.weights, .observed = start.observed, .state = {}};
-  if (candidate.kind == SurfaceCandidate::Kind::Changed) {
-    std::ranges::for_each(side.filters, [&](CausalFilter& filter) { filter.forget(settings_.change.forget); });
-    side.observed = 0;
+  const bool changed = candidate.kind == SurfaceCandidate::Kind::Changed;
+  start.observed = changed ? 0 : start.observed;
+  Side side{.filters = filters_on(start, drift), .state = {}};
+  if (changed) {
+    std::ranges::for_each(side.filters.keys(), [&](CausalFilter& filter) { filter.forget(settings_.change.forget); });
   }
-  side.state = state_of(side.filters, side.weights);
+  side.state = state_of(side.filters.keys(), start.weights);
   return side;
 }
 
 /// Bases are weighted by the usual rule.
 void ModelAverage::learn_on(Side& side, const Recent& recent) const {
-  std::vector<Eigen::Vector3d> innovations;
-  std::vector<Eigen::Matrix3d> covariances;
-  for (CausalFilter& filter : side.filters) {
-    const IekfUpdate update = filter.learn(recent.inputs, recent.segment, speeds_.reference());
-    innovations.push_back(update.innovation);
-    covariances.push_back(update.innovation_covariance);
+  std::vector<IekfUpdate> updates;
+  for (CausalFilter& filter : side.filters.keys()) {
+    updates.push_back(filter.learn(recent.inputs, recent.segment, speeds_.reference()));
   }
-  side.weights = updated_weights(side.weights, common_log_scores(side.weights, innovations, covariances), prior_,
-                                 settings_.weighting, side.observed);
-  ++side.observed;
+  side.filters.learn(common_log_scores(side.filters.weights(), updates), settings_.weighting);
 }
 
 void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, std::span<const SurfaceMemory> known,
@@ -166,26 +153,25 @@ void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, s
   }
   const std::size_t first = recent_since(since);
   mark_parting(since);
-  SurfaceTrial trial{.candidates = candidates, .evidence = {}, .weights = {}, .observed = {}, .log_odds = {}};
-  trial.log_odds.resize(std::ssize(candidates));
-  trial.segments = static_cast<int>(recent_.size() - first);
-  std::vector<CausalFilter> filters;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    Side side = side_of(candidates[i], known, first);
+  SurfaceTrial trial{.candidates = candidates, .segments = static_cast<int>(recent_.size() - first)};
+  HypothesisBank<CausalFilter> filters;
+  for (const SurfaceCandidate& candidate : candidates) {
+    Side side = side_of(candidate, known, first);
     SurfaceEvidence evidence(model_, posterior_of(side.state), law);
-    double score = std::log(candidates[i].prior);
+    double score = std::log(candidate.prior);
     for (std::size_t k = first; k < recent_.size(); ++k) {
       score += settings_.surfaces.learning_rate * evidence.add(model_, recent_[k].inputs, recent_[k].segment);
-      if (candidates[i].kind != SurfaceCandidate::Kind::Present) {
+      if (candidate.kind != SurfaceCandidate::Kind::Present) {
         learn_on(side, recent_[k]);
       }
     }
-    trial.log_odds[static_cast<Eigen::Index>(i)] = score;
-    trial.evidence.push_back(std::move(evidence));
-    trial.weights.push_back(std::move(side.weights));
-    trial.observed.push_back(side.observed);
-    std::ranges::move(side.filters, std::back_inserter(filters));
+    const HypothesisWeights& bases = side.filters;
+    trial.sides.add({.evidence = std::move(evidence), .bases = bases}, candidate.prior, score);
+    for (std::size_t i = 0; i < side.filters.size(); ++i) {
+      filters.add(std::move(side.filters[i]), bases.prior()[static_cast<Eigen::Index>(i)]);
+    }
   }
+  trial.sides.weigh(Eigen::VectorXd::Zero(std::ssize(candidates)));
   filters_ = std::move(filters);
   trial_ = std::move(trial);
   before_.clear();
@@ -195,18 +181,18 @@ void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, s
 }
 
 void ModelAverage::weigh_trial(const Eigen::VectorXd& log_factors) {
-  present(trial_).log_odds += log_factors;
+  present(trial_).sides.weigh(log_factors);
   mix_trial();
 }
 
 void ModelAverage::mix_trial() {
   const SurfaceTrial& trial = present(trial_);
-  const Eigen::VectorXd likely = trial.probabilities();
-  weights_.resize(likely.size() * prior_.size());
+  const Eigen::VectorXd& likely = trial.probabilities();
+  Eigen::MatrixXd weights(std::ssize(places_), likely.size());
   for (Eigen::Index side = 0; side < likely.size(); ++side) {
-    weights_.segment(side * prior_.size(), prior_.size()) =
-        likely[side] * trial.weights[static_cast<std::size_t>(side)];
+    weights.col(side) = likely[side] * trial.sides[static_cast<std::size_t>(side)].bases.weights();
   }
+  filters_.begin_with(weights.reshaped(), filters_.observed());
 }
 
 /// Bases are weighted by the usual rule on each surface, surfaces by the joint density of all segments so far.
@@ -214,23 +200,16 @@ void ModelAverage::reweigh_trial() {
   SurfaceTrial& trial = present(trial_);
   const Learning& now = present(learning_);
   const std::size_t bases = places_.size();
-  Eigen::Index heaviest = 0;
-  weights_.maxCoeff(&heaviest);
-  update_ = now.updates[static_cast<std::size_t>(heaviest)];
-  for (std::size_t side = 0; side < trial.candidates.size(); ++side) {
-    std::vector<Eigen::Vector3d> innovations;
-    std::vector<Eigen::Matrix3d> covariances;
-    for (std::size_t i = side * bases; i < (side + 1) * bases; ++i) {
-      innovations.push_back(now.updates[i].innovation);
-      covariances.push_back(now.updates[i].innovation_covariance);
-    }
-    trial.weights[side] =
-        updated_weights(trial.weights[side], common_log_scores(trial.weights[side], innovations, covariances), prior_,
-                        settings_.weighting, trial.observed[side]);
-    ++trial.observed[side];
-    trial.log_odds[static_cast<Eigen::Index>(side)] +=
-        settings_.surfaces.learning_rate * trial.evidence[side].add(model_, now.inputs, now.segment);
+  update_ = now.updates[filters_.heaviest()];
+  Eigen::VectorXd scores(trial.probabilities().size());
+  for (std::size_t i = 0; i < trial.sides.size(); ++i) {
+    SurfaceSide& side = trial.sides[i];
+    const auto updates = std::span(now.updates).subspan(i * bases, bases);
+    side.bases.learn(common_log_scores(side.bases.weights(), updates), settings_.weighting);
+    scores[static_cast<Eigen::Index>(i)] =
+        settings_.surfaces.learning_rate * side.evidence.add(model_, now.inputs, now.segment);
   }
+  trial.sides.weigh(scores);
   ++trial.segments;
   mix_trial();
 }
@@ -238,12 +217,9 @@ void ModelAverage::reweigh_trial() {
 void ModelAverage::settle(std::size_t candidate) {
   SurfaceTrial trial = std::move(present(trial_));
   trial_.reset();
-  const auto bases = static_cast<std::ptrdiff_t>(places_.size());
-  const auto first = filters_.begin() + static_cast<std::ptrdiff_t>(candidate) * bases;
-  std::vector<CausalFilter> kept(std::make_move_iterator(first), std::make_move_iterator(first + bases));
-  filters_ = std::move(kept);
-  weights_ = trial.weights[candidate];
-  observed_ = trial.observed[candidate];
+  filters_ = filters_.chosen(side_places(candidate));
+  const HypothesisWeights& taken = trial.sides[candidate].bases;
+  filters_.begin_with(taken.weights(), taken.observed());
 }
 
 /// Both predict the probes with their parameters, noise and disturbance; what differs is held against what is open. Of
@@ -271,7 +247,7 @@ double ModelAverage::apart(const SurfaceMemory& a, const SurfaceMemory& b, const
     difference.segment<3>(3 * i) = other.predicted.vector() - at.predicted.vector();
     const Eigen::Vector3d scale = (of_a.noise_scale + of_b.noise_scale) / 2.0;
     open.block<3, 3>(3 * i, 3 * i) =
-        segment_noise(at.path, probe.segment.measured, filters_.front().noise().shape, scale) / each;
+        segment_noise(at.path, probe.segment.measured, filters_[0].noise().shape, scale) / each;
     seconds += each * (probe.segment.end - probe.segment.start);
   }
   Eigen::MatrixXd common =

@@ -19,7 +19,10 @@ TEST_CASE("where nothing competes the surface under the robot is certain") {
 TEST_CASE("candidates that have no name yet are taken together") {
   SurfaceTrial trial;
   trial.candidates = {{.kind = Kind::Present}, {.kind = Kind::Changed}, {.kind = Kind::New}};
-  trial.log_odds = Eigen::Vector3d(0.0, -1.0, -2.0);
+  for (const double log_odds : {0.0, -1.0, -2.0}) {
+    trial.sides.add({}, 1.0, log_odds);
+  }
+  trial.sides.weigh(Eigen::Vector3d::Zero());
   const auto found = surface_probabilities(SurfaceBank(), trial);
   REQUIRE(found.size() == 1);
   CHECK(found.front().probability == doctest::Approx(1.0));

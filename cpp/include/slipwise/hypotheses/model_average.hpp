@@ -13,7 +13,7 @@
 
 #include "slipwise/filter/causal_filter.hpp"
 #include "slipwise/filter/driven_speeds.hpp"
-#include "slipwise/filter/weighting.hpp"
+#include "slipwise/filter/hypothesis_bank.hpp"
 #include "slipwise/hypotheses/change_detector.hpp"
 #include "slipwise/hypotheses/surface_memory.hpp"
 
@@ -65,7 +65,7 @@ class ModelAverage {
   /// Does a bounded slice of the models' refits; whether there was any to do. Results do not depend on it.
   bool refit_slice();
   /// Whether a refit took effect with the last segment.
-  bool refitted() const { return std::ranges::any_of(filters_, &CausalFilter::refitted); }
+  bool refitted() const { return std::ranges::any_of(filters_.keys(), &CausalFilter::refitted); }
 
   /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
   void forget(double fraction);
@@ -123,8 +123,7 @@ class ModelAverage {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.filters_, self.places_, self.settings_, self.prior_, self.weights_, self.observed_,
-      self.speeds_, self.changing_, self.before_);
+    a(self.model_, self.filters_, self.places_, self.settings_, self.speeds_, self.changing_, self.before_);
     a(self.detector_, self.change_, self.learning_, self.update_, self.undecided_, self.announced_);
     a(self.recent_, self.probes_, self.trial_, self.parting_, self.handed_over_, self.suspected_since_, self.moved_);
     self.check_sizes();
@@ -149,13 +148,11 @@ class ModelAverage {
 
   /// One candidate of a trial as it begins.
   struct Side {
-    std::vector<CausalFilter> filters;
-    Eigen::VectorXd weights;  ///< of the bases
-    std::size_t observed;     ///< segments weighted by
+    HypothesisBank<CausalFilter> filters;
     AverageState state;
   };
 
-  /// \throws std::invalid_argument unless there are as many filters, weights and places as bases and candidates.
+  /// \throws std::invalid_argument unless there are as many filters and places as bases and candidates.
   void check_sizes() const;
   void look_for_change();
   void update_next_filter();
@@ -163,13 +160,14 @@ class ModelAverage {
   ChangeTest test_for_change(const InputHistory& inputs, const Segment& segment);
   void branch();
   void resolve();
+  std::vector<std::size_t> side_places(std::size_t side) const;
   Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
   AverageState state_of(std::span<const CausalFilter> filters, const Eigen::VectorXd& weights) const;
   std::size_t sides() const { return trial_ ? trial_->candidates.size() : (undecided_ > 0 ? 2 : 1); }
   void note_recent();
   std::size_t recent_since(double since) const;
-  std::vector<CausalFilter> filters_on(const SurfaceMemory& surface, double drift) const;
+  HypothesisBank<CausalFilter> filters_on(const SurfaceMemory& surface, double drift) const;
   SurfaceMemory new_surface(std::span<const SurfaceMemory> known, const SurfaceMemory& present) const;
   Side side_of(const SurfaceCandidate& candidate, std::span<const SurfaceMemory> known, std::size_t first) const;
   void learn_on(Side& side, const Recent& recent) const;
@@ -178,12 +176,9 @@ class ModelAverage {
   SurfacePosterior posterior_of(const AverageState& state) const;
 
   MotionModel model_;
-  std::vector<CausalFilter> filters_;              ///< one per basis; after an alarm also those that had none
+  HypothesisBank<CausalFilter> filters_;           ///< one per basis; after an alarm also those that had none
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
-  Eigen::VectorXd prior_;     ///< prior weights of the bases
-  Eigen::VectorXd weights_;   ///< one per filter
-  std::size_t observed_ = 0;  ///< segments weighted by
   DrivenSpeeds speeds_;
   std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of terrain is looked for
   std::deque<AverageState> before_;     ///< before each of the last segments

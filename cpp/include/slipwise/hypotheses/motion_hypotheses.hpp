@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "slipwise/filter/hypothesis_bank.hpp"
 #include "slipwise/filter/motion_posterior.hpp"
 #include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/hypotheses/cascaded_model.hpp"
@@ -123,7 +124,7 @@ class MotionHypotheses {
   /// What one structure knows; empty if it is not tried.
   std::shared_ptr<const MotionPosterior> of(Structure structure) const;
   /// Weight of each structure; 0 where it is not tried.
-  const std::array<double, kStructures>& weights() const { return weights_; }
+  std::array<double, kStructures> weights() const;
   /// How each structure took the last segment in.
   const std::array<StructureUpdate, kStructures>& updates() const { return updates_; }
   /// Segments learned.
@@ -135,17 +136,15 @@ class MotionHypotheses {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.settings_, self.joint_, self.direct_, self.direct_bases_, self.cascaded_, self.baseline_, self.tried_,
-      self.weights_);
-    a(self.evidence_, self.updates_, self.count_, self.segment_, self.to_predict_, self.predicted_, self.averaging_);
+    a(self.settings_, self.joint_, self.direct_, self.direct_bases_, self.cascaded_, self.baseline_, self.tried_);
+    a(self.updates_, self.count_, self.segment_, self.to_predict_, self.predicted_, self.averaging_);
     a(self.bank_, self.begun_with_);
   }
 
  private:
-  using Active = std::array<bool, kStructures>;
-  bool tried(Structure structure) const { return tried_[static_cast<std::size_t>(structure)]; }
-  double weight(Structure structure) const { return weights_[static_cast<std::size_t>(structure)]; }
+  bool tried(Structure structure) const { return tried_.place_of(structure) < tried_.size(); }
   void join_cascade();
+  void favour_known();
   /// Of the structures that may come to be tried.
   template <class Self>
   static auto averages_of(Self& self) {
@@ -158,11 +157,9 @@ class MotionHypotheses {
   ScoredSegment predict(Structure structure);
   ModelAverage* average_of(Structure structure);
   ScoredSegment learned(const ModelAverage& average, Structure structure);
-  void favour(Structure structure);
   Surface completed(const KnownSurface& known, std::size_t place) const;
   void update_weights();
   void drop_refuted();
-  std::vector<Structure> structures() const;
   std::shared_ptr<const MotionPosterior> posterior_of(const ModelAverage& average, Structure structure) const;
 
   HypothesisSettings settings_;
@@ -171,9 +168,7 @@ class MotionHypotheses {
   std::vector<Eigen::Index> direct_bases_;  ///< their places among all bases
   std::optional<CascadedModel> cascaded_;
   PredictiveScore baseline_;
-  Active tried_{};
-  std::array<double, kStructures> weights_{};
-  std::array<double, kStructures> evidence_{};  ///< tempered log scores so far
+  HypothesisBank<Structure> tried_;  ///< in the order of their values
   std::array<StructureUpdate, kStructures> updates_{};
   std::size_t count_ = 0;
   std::optional<DrivenSegment> segment_;  ///< that is being learned

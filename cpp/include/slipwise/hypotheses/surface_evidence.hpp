@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "slipwise/filter/estimate.hpp"
+#include "slipwise/filter/hypothesis_bank.hpp"
 #include "slipwise/motion/disturbance_model.hpp"
 #include "slipwise/motion/motion_model.hpp"
 #include "slipwise/motion/motion_noise.hpp"
@@ -47,21 +48,20 @@ class SurfaceEvidence {
  private:
   /// The estimate under one candidate of the disturbance.
   struct Under {
-    double log_weight;           ///< its weight so far, and how likely the segments were
     double time_constant;        ///< [s]
     Eigen::VectorXd nominal;     ///< [places] variances before anything recent is known
     Eigen::VectorXd state;       ///< [parameters + places], of the parameters what they differ by from the posterior
     Eigen::MatrixXd covariance;  ///< of it
 
     void decay(double seconds);
-    void learn(const Eigen::Vector3d& innovation, const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_state,
-               const Eigen::Matrix3d& noise);
+    /// Returns the log score of the innovation.
+    double learn(const Eigen::Vector3d& innovation, const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_state,
+                 const Eigen::Matrix3d& noise);
   };
-  double log_total() const;
 
   SurfacePosterior posterior_;
   std::vector<Eigen::Index> places_;  ///< of the disturbed terms
-  std::vector<Under> under_;
+  HypothesisBank<Under> under_;
   double time_ = 0.0;  ///< of the last segment's middle [s]
 };
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "slipwise/filter/hypothesis_bank.hpp"
 #include "slipwise/filter/surface_slip.hpp"
 #include "slipwise/hypotheses/surface_evidence.hpp"
 
@@ -55,16 +56,19 @@ struct SurfaceCandidate {
   double prior = 1.0;     ///< probability, of all candidates
 };
 
-/// Candidates that compete, and what speaks for each.
+/// What speaks for a candidate.
+struct SurfaceSide {
+  SurfaceEvidence evidence;
+  HypothesisWeights bases;  ///< given this surface
+};
+
+/// Candidates that compete.
 struct SurfaceTrial {
   std::vector<SurfaceCandidate> candidates;
-  std::vector<SurfaceEvidence> evidence;
-  std::vector<Eigen::VectorXd> weights;  ///< of the bases, given each
-  std::vector<std::size_t> observed;     ///< segments that these were weighted by
-  Eigen::VectorXd log_odds;              ///< log probabilities but for a constant
-  int segments = 0;                      ///< that the evidence comes from
+  HypothesisBank<SurfaceSide> sides = {};  ///< one of each, by the joint density of all segments so far
+  int segments = 0;                        ///< that the evidence comes from
 
-  Eigen::VectorXd probabilities() const;
+  const Eigen::VectorXd& probabilities() const { return sides.weights(); }
 };
 
 }  // namespace slipwise
