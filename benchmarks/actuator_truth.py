@@ -21,8 +21,6 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
-from scipy.signal import lfilter
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
@@ -208,6 +206,9 @@ def shown_responses(truth: Truth, commanded: Inputs, vehicle: LandTamer) -> dict
 
     The wheels have the vehicle's lag and delay. The body has some 25 ms more: its mass on soft tyres.
     """
+    from scipy.optimize import least_squares
+    from scipy.signal import lfilter
+
     t = np.arange(0.0, truth.t[-1] + FINE / 2, FINE)
     held = np.searchsorted(commanded.t, t, side="right") - 1
 

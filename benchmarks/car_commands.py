@@ -15,9 +15,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 import slipwise as sw
 from slipwise.calibration.learned_log import learn_log
@@ -36,6 +34,8 @@ STARTS = ((1.5, 2.0), (4.0, 2.0))  # m/s and 1/m, from which gains are looked fo
 
 def read(path: Path, folder: Path) -> sw.Log:
     """Read a log of DART, its poses at the rear axle."""
+    import pandas as pd
+
     table = pd.read_csv(path)
     ahead, left, turned = MARKER
     yaw = table.yaw - turned
@@ -74,6 +74,8 @@ def errors(measured: Floats, pose: Floats) -> tuple[float, float]:
 
 def best_gains(log: sw.Log, made: Predictions, part: slice) -> Floats:
     """Return the gains of the bicycle that suit some windows best."""
+    from scipy.optimize import minimize
+
     measured = made.measured[part]
 
     def cost(gains: Floats) -> float:

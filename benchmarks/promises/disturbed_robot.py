@@ -16,7 +16,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter  # type: ignore[import-untyped]
 
 from slipwise import _core
 from slipwise.logs import Inputs, Log, Poses, Run
@@ -122,6 +121,8 @@ def _commands(seconds: float, random: np.random.Generator) -> Inputs:
 
 def _followed(robot: Robot, commands: Inputs, channel: int, t: Floats) -> Floats:
     """Speed or yaw rate at times `t`, from rest."""
+    from scipy.signal import lfilter  # type: ignore[import-untyped]
+
     at = np.searchsorted(commands.t, t - robot.delay[channel] + 1e-9, side="right") - 1
     wish = np.where(at >= 0, (commands.v, commands.omega)[channel][np.maximum(at, 0)], 0.0)
     wish = _limited(wish, robot.limits[channel])
@@ -149,6 +150,8 @@ def _limited(wish: Floats, limits: Limits) -> Floats:
 def _slip_rates(
     robot: Robot, slip: Floats, speeds: tuple[Floats, Floats], random: np.random.Generator
 ) -> Floats:
+    from scipy.signal import lfilter
+
     v, omega = speeds
     lon = slip[0] * v + slip[1] * v * np.abs(omega)
     lat = slip[2] * v * omega + slip[3] * omega

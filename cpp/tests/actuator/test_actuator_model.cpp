@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command actuator: what its steps sum to, causality, and its exact sensitivities.
+// So hold its axes: axis_response, axis_stepper and the derivatives of first_order_lag.
 #include <doctest/doctest.h>
 
 #include <algorithm>

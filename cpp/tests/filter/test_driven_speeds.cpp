@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reference speeds are what the robot drove at most of its moving time, and never too small to mean something.
+// So holds speed_range.
 #include <doctest/doctest.h>
 
 #include <vector>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A simulated car with a dead zone: its curves are found from what it was told and how it moved.
+// So holds lag_variance.
 #include "slipwise/identify/car_curve_filter.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A learner with several sources of poses: one that is late, badly placed and inexact beside a good one.
+// So holds pose_source: the order in which poses of a source wait.
 #include "slipwise/online/known_sources.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a manoeuvre leads: as the integrator says, with the exact derivative by every parameter.
+// So holds speed_profile with its derivatives.
 #include <doctest/doctest.h>
 
 #include <cmath>

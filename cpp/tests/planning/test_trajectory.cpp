@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Trajectories reach reachable goals within the limits, and say so when they cannot.
+// So hold reach_goal and speed_profile.
 #include <doctest/doctest.h>
 
 #include <algorithm>

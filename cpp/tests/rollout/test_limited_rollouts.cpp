@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rollouts behind limits of the drive are what integrate_segment says of the limited commands.
+// So holds limited_commands.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rollouts are what integrate_segment says, in every basis, with every actuator, at every instruction level.
+// So are its parts: slip_program, actuator_schedule, actuator_start and the lanes of kernels.
 #include <doctest/doctest.h>
 
 #include <algorithm>

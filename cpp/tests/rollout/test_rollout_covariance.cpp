@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Covariances along rollouts are those of one linearised segment, and sampled futures scatter like them.
+// So holds path_noise.
 #include <doctest/doctest.h>
 
 #include <Eigen/Core>

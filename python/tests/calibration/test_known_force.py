@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A known force acts as gravity does: how the robot gives way to it is learned, and predicted."""
+"""A known force acts as gravity does, on the whole over each segment (force_buffer)."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ import pytest
 from sample_logs import Drive, inputs_until, kept, simulated_run
 
 from slipwise import _core
-from slipwise.calibration import Settings, make_settings
+from slipwise.calibration import Settings
 from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
 from slipwise.calibration.learner import BASELINE, STRUCTURES
 from slipwise.calibration.prepared_run import collect_windows, prepare_run
@@ -21,17 +21,6 @@ HORIZONS = (1.0, 2.0, 5.0)
 KEEP = Keep(0.6)
 SLIP = _core.named_basis("edd-2")
 INPUTS = ("wheel", "command")
-COMPARED = (
-    "t_end",
-    "pose",
-    "covariance",
-    "inflation",
-    "dof",
-    "nominal_nis",
-    "structure",
-    "measured",
-    "learned_until",
-)
 
 
 def moved(run: Run, seconds: float) -> Run:
@@ -128,43 +117,6 @@ def test_predictions_are_of_the_segments_that_are_cut_for_other_methods(input_na
             assert np.array_equal(one.run, targets.position)
         assert baseline.method == "none"
         assert p.position_error[len(p) // 2 :].mean() < 0.5 * baseline.position_error[len(p) // 2 :].mean()
-
-
-@pytest.mark.parametrize("input_name", INPUTS)
-@pytest.mark.parametrize("disturbance", [False, True])
-def test_nothing_measured_after_a_start_is_used_and_parameters_keep_the_embargo(
-    input_name: str, *, disturbance: bool
-) -> None:
-    settings = make_settings({"slip_disturbance": {"learn": disturbance}})
-    for p in learned(log(), input_name, settings).predictions:
-        assert p.causal
-        begin = np.array([log().runs[run].poses.t[0] for run in p.run])
-        assert (p.learned_until >= np.minimum(begin, p.t_start)).all()
-        if input_name == "wheel" and not disturbance:
-            assert (p.learned_until <= np.maximum(begin, p.t_start - p.horizon) + 1e-9).all()
-
-
-def test_a_log_cut_off_at_any_time_gives_the_same_predictions_until_then(subtests: pytest.Subtests) -> None:
-    for input_name in INPUTS:
-        for t in [11.3, 26.02, 49.99, 66.6, 80.0]:
-            with subtests.test(input_name=input_name, t=t):
-                compared = 0
-                for part, p in zip(
-                    learned(until(log(), t), input_name).predictions,
-                    whole(input_name).predictions,
-                    strict=True,
-                ):
-                    places = {start: i for i, start in enumerate(p.t_start.tolist())}
-                    for i, start in enumerate(part.t_start.tolist()):
-                        j = places[start]
-                        if part.t_end[i] != p.t_end[j]:
-                            assert i == len(part) - 1  # the last pose may stand in for a nearer one behind it
-                            continue
-                        for name in COMPARED:
-                            one, other = getattr(part, name)[i], getattr(p, name)[j]
-                            assert np.asarray(one).tobytes() == np.asarray(other).tobytes(), (name, start)
-                        compared += 1
-                assert compared >= 0.5 * sum(t - 1.0 for _ in HORIZONS) / sum(HORIZONS)
 
 
 def test_the_history_of_a_log_cut_off_is_the_beginning_of_the_history() -> None:

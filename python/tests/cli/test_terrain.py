@@ -9,6 +9,7 @@ import io
 import json
 import shutil
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,7 @@ from sample_terrain import made_recordings, write_tables
 
 from slipwise.cli.main import run
 
-pytest.importorskip("sklearn", reason="training needs scikit-learn")
+pytestmark = pytest.mark.skipif(find_spec("sklearn") is None, reason="training needs scikit-learn")
 
 pytestmark = pytest.mark.slow
 

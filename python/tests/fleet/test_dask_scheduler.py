@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -11,13 +12,17 @@ from fleet.work_samples import DIES_ONCE, FAILS, sample_task, sample_work
 from slipwise.errors import SettingsError
 from slipwise.fleet.dask_scheduler import DaskScheduler
 
-distributed = pytest.importorskip("distributed", reason="the extra `fleet` is not installed")
-pytestmark = pytest.mark.slow
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(find_spec("distributed") is None, reason="the extra `fleet` is not installed"),
+]
 
 
 def test_killed_worker_costs_nothing_but_its_log_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    import distributed
+
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).resolve().parents[1]))  # of the workers
     names = [*(f"log-{k}" for k in range(6)), str(tmp_path / DIES_ONCE), FAILS]
     with distributed.LocalCluster(

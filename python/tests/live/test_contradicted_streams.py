@@ -179,7 +179,7 @@ def test_what_was_handed_on_is_withdrawn_with_the_start_values_and_a_word_why(tm
     assert built.learning.valid is None
 
 
-LONG, LATE = 600.0, 400.0  # s
+LONG, LATE = 420.0, 260.0  # s
 LATER: dict[str, Callable[[Log], Log]] = {
     "frozen localiser": lambda log: stopped(log, LATE),
     "v flipped": STREAMS["v flipped"],

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,7 @@ from slipwise.logs.remote import lent, remote_version, staged
 from slipwise.logs.survey import survey_log
 
 fsspec = pytest.importorskip("fsspec")
-pytest.importorskip("aiohttp")
+pytestmark = pytest.mark.skipif(find_spec("aiohttp") is None, reason="reading logs on servers needs aiohttp")
 
 ROWS = "".join(f"{0.1 * k:.1f},0.5,0.1,{0.05 * k:.3f},0,0\n" for k in range(50))
 DRIVE = ("t,odo_v,odo_omega,x,y,yaw\n" + ROWS).encode()

@@ -40,6 +40,9 @@ class Situation:
     uses: tuple[str, ...] = ()  # those that it is tried with; all where there are none
     fleet: bool = False  # learning begins with a fleet's prior
     also: tuple[str, ...] = ()  # uses that are its own
+    without: tuple[
+        str, ...
+    ] = ()  # uses in which it is no other situation than one without its `before` and prior
     turns: bool = False  # only turns are measured: where it drives to is not known
     slow: bool = False
 

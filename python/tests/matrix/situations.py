@@ -52,6 +52,7 @@ CREEP = {**SLIP, "lat.abs(V)*gy": 0.05}  # of a known force, which acts as gravi
 CREEPS = ("basis=custom", 'terms.lon=["V"]', 'terms.lat=["abs(V)*gy"]', 'terms.ang=["w"]')
 HITCH = (0.3, 1.0)  # m: behind the robot, and its length
 TURNS = {"ang.w": -0.25}
+UNCHANGED = ("inspect", "fleet", "parquet", "mcap")  # by what learning begins with
 IEKF = ("basis=edd-2", "estimator=iekf")
 BATCH = ("basis=edd-2", "estimator=batch")
 SMOOTH = ("basis=edd-2", "smoothing.smooth=true")
@@ -287,6 +288,7 @@ SITUATIONS: tuple[Situation, ...] = (
         truth=SLIP,
         changed=TIGHTER,
         also=("several-logs",),
+        without=UNCHANGED,
     ),
     Situation(
         "labels",
@@ -294,6 +296,7 @@ SITUATIONS: tuple[Situation, ...] = (
         (WHEELS, POSES, logs.label("sand")),
         "wheel",
         before=(SLIPPERY, (WHEELS, POSES, logs.label("ice"))),
+        without=("fleet",),
         truth=SLIP,
         changed=TIGHTER,
     ),
@@ -321,6 +324,7 @@ SITUATIONS: tuple[Situation, ...] = (
         "wheel",
         truth=SLIP,
         fleet=True,
+        without=UNCHANGED,
         slow=True,
         changed=TIGHTER,
         seconds=40.0,

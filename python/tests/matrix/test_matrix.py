@@ -46,6 +46,8 @@ def cells() -> list[object]:
     found: list[object] = []
     for situation in SITUATIONS:
         for use in (*(situation.uses or USES), *situation.also):
+            if use in situation.without:
+                continue
             slow = situation.slow or use in SLOW
             marks = [pytest.mark.slow] if slow else []
             why = why_wrong(situation, use)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two experts become one probability; doubt and newness speak for an unknown surface."""
+"""Two experts become one probability (expert_pool); doubt and newness speak for an unknown surface."""
 
 from __future__ import annotations
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from sample_terrain import made_recordings
 from slipwise.errors import ModelError
 from slipwise.terrain import Training, cut_windows, load_classifier, save_classifier, train
 
-pytest.importorskip("sklearn", reason="training needs scikit-learn")
+pytestmark = pytest.mark.skipif(find_spec("sklearn") is None, reason="training needs scikit-learn")
 
 pytestmark = pytest.mark.slow
 

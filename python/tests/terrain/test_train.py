@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib.util import find_spec
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from sample_terrain import made_recording, made_recordings
 from slipwise.errors import SettingsError
 from slipwise.terrain import UNKNOWN, Recording, Training, cut_windows, train
 
-pytest.importorskip("sklearn", reason="training needs scikit-learn")
+pytestmark = pytest.mark.skipif(find_spec("sklearn") is None, reason="training needs scikit-learn")
 
 pytestmark = pytest.mark.slow
 

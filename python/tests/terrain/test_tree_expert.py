@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Trees of plain numbers lead each row to its leaf."""
+"""Trees of plain numbers lead each row to its leaf (terrain_experts)."""
 
 from __future__ import annotations
 
