@@ -2,7 +2,6 @@
 // The slip disturbance: found where it does, followed, let go with time, and not invented where it does not.
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -14,6 +13,7 @@
 #include "simulated_drive.hpp"
 #include "slipwise/disturbance/slip_disturbance.hpp"
 #include "slipwise/filter/causal_filter.hpp"
+#include "slipwise/linear/cholesky.hpp"
 
 namespace slipwise {
 namespace {
@@ -86,7 +86,7 @@ Followed follow(const MotionPosterior& posterior, const InputHistory& inputs, co
       const Eigen::Vector3d error = next.measured.vector() - with.pose;
       found.error += std::pow(error.z(), 2);
       found.plain_error += std::pow(next.measured.theta - plain.pose.z(), 2);
-      found.nis += error.dot(with.covariance.llt().solve(error)) * 2.0 / static_cast<double>(segments.size());
+      found.nis += error.dot(Cholesky(with.covariance).solve(error)) * 2.0 / static_cast<double>(segments.size());
     }
     learn(found.slip, posterior, inputs, segments, i);
   }

@@ -3,7 +3,6 @@
 // which cannot tell them apart is not claimed to.
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -11,6 +10,8 @@
 #include "simulated_drive.hpp"
 #include "slipwise/filter/body_force.hpp"
 #include "slipwise/filter/causal_filter.hpp"
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/slip/force_terms.hpp"
 
 namespace slipwise {
@@ -106,7 +107,7 @@ Outcome learned(const Drive& drive) {
   process.pass(prior, -1.0);
   const auto& places = process.places();
   const Eigen::MatrixXd nominal = prior.covariance(places, places);
-  const Eigen::MatrixXd root = nominal.llt().matrixL();
+  const Eigen::MatrixXd root = covariance_root(nominal);
   const auto draw = [&](Eigen::Index size) {
     Eigen::VectorXd numbers(size);
     for (double& number : numbers) {
@@ -154,7 +155,7 @@ double nees(const Drive& like, bool of_force, int runs) {
     }
     const Eigen::VectorXd error = outcome.error(rows);
     const Eigen::MatrixXd covariance = outcome.covariance(rows, rows);
-    sum += error.dot(covariance.llt().solve(error)) / static_cast<double>(rows.size()) / runs;
+    sum += error.dot(Cholesky(covariance).solve(error)) / static_cast<double>(rows.size()) / runs;
   }
   return sum;
 }
@@ -195,7 +196,7 @@ TEST_CASE("a drive without a force is rarely said to have one") {
                                            process.places()[static_cast<std::size_t>(2 * part + 1)]};
       const Eigen::VectorXd found = outcome.found.segment(2 * part, 2);
       const Eigen::MatrixXd covariance = outcome.covariance(rows, rows);
-      claimed = claimed || found.dot(covariance.llt().solve(found)) > 11.83;
+      claimed = claimed || found.dot(Cholesky(covariance).solve(found)) > 11.83;
     }
     claims += claimed ? 1 : 0;
   }

@@ -2,7 +2,6 @@
 // Smoothing: equality with a batch solution on a linear problem, and a parameter that drifts.
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -11,6 +10,7 @@
 
 #include "simulated_drive.hpp"
 #include "slipwise/filter/rts_smoother.hpp"
+#include "slipwise/linear/cholesky.hpp"
 
 namespace slipwise {
 namespace {
@@ -61,7 +61,7 @@ Estimate batch(const std::vector<BatchDatum>& data, double a, double added) {
       information += row * row.transpose() / added;
     }
   }
-  const Eigen::MatrixXd covariance = information.inverse();
+  const Eigen::MatrixXd covariance = Cholesky(information).inverse();
   return {(covariance * vector).array() + 0.1, covariance};
 }
 

@@ -35,7 +35,7 @@ TEST_CASE("the end given what was measured is that of the joint distribution") {
   const Estimate end = end_estimate(prior(), point, measured);
   const WindowModel at = linear(prior().mean);
   const Eigen::MatrixXd joint = at.derivative * prior().covariance * at.derivative.transpose() + at.noise;
-  const Eigen::MatrixXd gain = joint.bottomLeftCorner(2, 2) * joint.topLeftCorner(2, 2).inverse();
+  const Eigen::MatrixXd gain = joint.bottomLeftCorner(2, 2) * Eigen::Matrix2d(joint.topLeftCorner(2, 2)).inverse();
   const Eigen::VectorXd mean = at.value.tail(2) + gain * (measured - at.value.head(2));
   CHECK((end.mean - mean).norm() < 1e-12);
   CHECK((end.covariance - (joint.bottomRightCorner(2, 2) - gain * joint.topRightCorner(2, 2))).norm() < 1e-12);

@@ -18,7 +18,7 @@ using tests::surface_settings;
 constexpr double kBefore = 90.0;   // [s] driven before the cue
 constexpr std::size_t kFirst = 8;  // predictions after it in which a change is felt
 constexpr std::size_t kMinute = 60;
-constexpr std::uint64_t kSeeds = 12;
+constexpr std::uint64_t kSeeds = 6;
 
 struct Errors {
   double told = 0.0;

@@ -83,23 +83,6 @@ TEST_CASE("rollouts of 5 s over three surfaces are those of the integrator in ev
   }
 }
 
-TEST_CASE("a change that is none changes nothing, to rounding, and a far edge is not reached") {
-  const MotionModel model(named_basis("thesis-15"), {});
-  const Eigen::VectorXd parameters = Eigen::VectorXd::Constant(model.size(), 0.02);
-  const tests::SampleCommands<double> commands(8, 40, kPeriod);
-  const auto batch = commands.batch(kStart, kPast);
-  const auto plain = tests::roll(RolloutProgram(model, parameters, {.period = kPeriod}), batch, {});
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(model.slip_size());
-  const Eigen::VectorXd much = Eigen::VectorXd::Ones(model.slip_size());
-  for (const SlipAhead& ahead : {SlipAhead{{0.5}, {none}}, SlipAhead{{1e3}, {much}}}) {
-    const auto paths = tests::roll(RolloutProgram(model, parameters, {.period = kPeriod, .ahead = ahead}), batch, {});
-    for (std::size_t i = 0; i < plain.x.size(); ++i) {
-      CHECK(paths.x[i] == doctest::Approx(plain.x[i]).epsilon(1e-12));
-      CHECK(paths.theta[i] == doctest::Approx(plain.theta[i]).epsilon(1e-12));
-    }
-  }
-}
-
 UncertainModel uncertain_model(const MotionModel& model, const MixedAhead& mixed) {
   Eigen::VectorXd parameters = Eigen::VectorXd::Zero(model.size());
   parameters.head(model.slip_size()) = mixed.slip;

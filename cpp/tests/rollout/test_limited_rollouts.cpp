@@ -155,20 +155,6 @@ TEST_CASE("a limited rollout's bytes depend neither on threads nor on its neighb
   CHECK(alone.theta[19] == one.theta[19 * 101 + 100]);
 }
 
-TEST_CASE("the ramp goes on from what the commands before the start had left it at") {
-  const MotionModel model(Basis("none", {}, {}, {}), {});
-  const RolloutProgram program(model, Eigen::VectorXd(),
-                               {.period = 0.1, .limits = {.speed = {.slew_rate_up = 0.5, .slew_rate_down = 0.5}}});
-  const std::vector<double> v(10, 1.0), omega(10, 0.0);
-  const std::vector<RolloutStart> start{{{}, {0.6, 0.0}}};
-  const CommandView<double> view{v.data(), omega.data(), 1, 1};
-  // Nothing was commanded before: the drive goes on from what it does. 0.6 m/s to 1 m/s in 0.8 s.
-  CHECK(tests::roll(program, RolloutBatch<double>{1, 10, view, start}).x[9] == doctest::Approx(1.0 - 0.5 * 0.4 * 0.8));
-  // Commanded to stand for long, and 1 m/s for the last 0.4 s: 0.2 m/s to 0.7 m/s.
-  const std::vector<DriveCommand> past{{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}};
-  CHECK(tests::roll(program, RolloutBatch<double>{1, 10, view, start, past}).x[9] == doctest::Approx(0.45));
-}
-
 TEST_CASE("costs behind limits are those at the ends of the periods") {
   const MotionModel model(Basis("none", {}, {}, {}), {});
   const RolloutProgram program(model, Eigen::VectorXd(), {.period = 0.1, .limits = {.speed = {.slew_rate_up = 1.0}}});

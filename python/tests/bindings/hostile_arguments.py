@@ -77,9 +77,6 @@ ANY_LENGTH = {
 }
 
 
-_ABSENT = object()
-
-
 def target(bound: Bound) -> Callable[..., Any]:
     """Return what is called, on a fresh object where it is a method."""
     if not bound.owner:

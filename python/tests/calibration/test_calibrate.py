@@ -157,10 +157,3 @@ def test_runs_of_equal_names_stay_apart() -> None:
     history = calibrate(Log(runs=(one, other)), input="wheel").history
     assert history is not None
     assert sorted(set(history.run.tolist())) == [0, 1]
-
-
-def test_progress_goes_from_the_start_to_the_end() -> None:
-    fractions: list[float] = []
-    calibrate(simulated_log(Drive(seconds=120.0)), input="wheel", progress=fractions.append)
-    assert fractions == sorted(fractions)
-    assert 0.0 < fractions[0] <= fractions[-1] <= 1.0

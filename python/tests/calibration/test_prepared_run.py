@@ -8,7 +8,6 @@ from sample_logs import Drive, simulated_run
 
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.logs import Log, Run
-from slipwise.logs.log import Inputs
 
 EPOCH = 1.7e9
 
@@ -33,10 +32,3 @@ def test_runs_that_count_from_their_own_start_keep_the_order_of_the_files() -> N
     drive = prepare_run(log, "wheel")
     assert [item.run.name for item in drive] == ["first", "second"]
     assert np.all(drive[1].inputs.t < 20.0)
-
-
-def held_commands() -> Inputs:
-    """Commands at 90 Hz for 5 s, new ones every 0.4 s."""
-    t = 3.0 + np.arange(450) / 90.0
-    kind = (np.arange(450) // 36).astype(float)
-    return Inputs(t=t, v=0.4 + 0.3 * np.cos(kind), vy=np.zeros(450), omega=np.sin(2.0 * kind))

@@ -10,17 +10,6 @@ from slipwise.live.feed import Feed
 from slipwise.live.samples import Sample, Wheels
 
 
-def test_all_samples_are_delivered_in_order_and_then_it_is_finished() -> None:
-    samples: list[Sample] = [Wheels(float(k), 0.5, 0.0) for k in range(100)]
-    taken: list[Sample] = []
-    feed = Feed(samples)
-    assert not feed.finished
-    feed.subscribe(taken.append)
-    feed.close()  # waits for the thread, which may be stopped before the end
-    assert taken == samples[: len(taken)]
-    assert feed.finished is (taken == samples)
-
-
 def test_an_endless_feed_is_stopped() -> None:
     asked = threading.Event()
 

@@ -2,8 +2,6 @@
 // The delayed-state filter: equality with a batch solution over shared poses, late poses, gates and restarts.
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -13,6 +11,7 @@
 
 #include "finite_difference.hpp"
 #include "simulated_drive.hpp"
+#include "slipwise/linear/cholesky.hpp"
 #include "slipwise/thesis/delayed_state.hpp"
 
 namespace slipwise {
@@ -70,7 +69,8 @@ Estimate batch_axis(const Eigen::VectorXd& z, const Eigen::VectorXd& driven, dou
       add(row, nominal * driven[i - 1], psd * duration);
     }
   }
-  return {information.inverse() * vector, information.inverse()};
+  const Cholesky factor(information);
+  return {factor.solve(vector), factor.inverse()};
 }
 
 TEST_CASE("with shared poses the filter is the batch solution of the whole drive") {
