@@ -52,7 +52,8 @@ CREEP = {**SLIP, "lat.abs(V)*gy": 0.05}  # of a known force, which acts as gravi
 CREEPS = ("basis=custom", 'terms.lon=["V"]', 'terms.lat=["abs(V)*gy"]', 'terms.ang=["w"]')
 HITCH = (0.3, 1.0)  # m: behind the robot, and its length
 TURNS = {"ang.w": -0.25}
-UNCHANGED = ("inspect", "fleet", "parquet", "mcap")  # by what learning begins with
+COLUMNS = ("lines", "parquet", "mcap")  # of its logs are those of another situation
+UNCHANGED = ("inspect", "fleet", *COLUMNS)  # by what learning begins with
 IEKF = ("basis=edd-2", "estimator=iekf")
 BATCH = ("basis=edd-2", "estimator=batch")
 SMOOTH = ("basis=edd-2", "smoothing.smooth=true")
@@ -108,6 +109,7 @@ SITUATIONS: tuple[Situation, ...] = (
         changed=replace(TIGHTER, axes=LIMITED),
         never=("at once",),
         bound=(0.1, 0.06),
+        without=COLUMNS,
     ),
     Situation("both", PLAIN, (TOLD, WHEELS, POSES), settings=(), changed=TIGHTER, never=("at once",)),
     Situation(
@@ -268,6 +270,7 @@ SITUATIONS: tuple[Situation, ...] = (
         truth=SLIP,
         pushes=("lat.abs(V)",),
         changed=TIGHTER,
+        without=COLUMNS,
     ),
     Situation(
         "force-world",
@@ -278,6 +281,7 @@ SITUATIONS: tuple[Situation, ...] = (
         truth=SLIP,
         bound=(0.04, 0.03),
         changed=TIGHTER,
+        without=COLUMNS,
     ),
     Situation(
         "memory",
@@ -308,6 +312,7 @@ SITUATIONS: tuple[Situation, ...] = (
         settings=("basis=edd-2", "sensor_extrinsics.x=0.2", "sensor_extrinsics.learn=true"),
         truth={**SLIP, "sensor_x": 0.4, "sensor_y": -0.15},
         changed=TIGHTER,
+        without=COLUMNS,
     ),
     Situation(
         "clock",
@@ -316,6 +321,7 @@ SITUATIONS: tuple[Situation, ...] = (
         "wheel",
         truth={**SLIP, "clock_offset": 0.15},
         changed=TIGHTER,
+        without=COLUMNS,
     ),
     Situation(
         "prior",
@@ -337,8 +343,18 @@ SITUATIONS: tuple[Situation, ...] = (
         settings=("basis=custom", 'terms.lon=["V"]', 'terms.ang=["w", "w*abs(V)"]'),
         truth={"lon.V": -0.06, "ang.w": -0.2, "ang.w*abs(V)": -0.1},
         changed=TIGHTER,
+        without=COLUMNS,
     ),
     Situation("iekf", PLAIN, (WHEELS, POSES), "wheel", settings=IEKF, truth=SLIP, changed=TIGHTER),
     Situation("batch", PLAIN, (TOLD, POSES), settings=BATCH, truth=SLIP, changed=TIGHTER),
-    Situation("smoothing", PLAIN, (WHEELS, POSES), "wheel", settings=SMOOTH, truth=SLIP, changed=TIGHTER),
+    Situation(
+        "smoothing",
+        PLAIN,
+        (WHEELS, POSES),
+        "wheel",
+        settings=SMOOTH,
+        truth=SLIP,
+        changed=TIGHTER,
+        without=COLUMNS,
+    ),
 )
