@@ -64,38 +64,6 @@ def check_law(speed: Floats, command: float, gain: float, part: float) -> None:
 MODELS = list(product(LAGS, FRACTIONS, GAINS, DELAYS))
 
 
-def test_predicted_speed_stays_between_rest_and_command(subtests: pytest.Subtests) -> None:
-    for before in [0.0, 0.05, 0.7]:
-        for command in [1.0, -0.7]:
-            with subtests.test(before=before, command=command):
-                for lags, fraction, gain, delay in MODELS[::11]:
-                    model = two_modes(lags, fraction, gain, delay)
-                    for part in PARTS:
-                        initial = (part * gain * command, 0.0)
-                        path = predict(
-                            model, [(0.0, command, 0.0)], horizon=2.0, start=before, initial=initial
-                        )
-                        check_law(speeds(path.poses, 0.1), command, gain, part)
-
-
-@pytest.mark.parametrize("before", [0.0, 0.05, 0.7])
-def test_so_does_the_yaw_rate(before: float) -> None:
-    model = two_modes((0.3, 1.5), 0.4, 0.8, 0.2)
-    for part in PARTS:
-        initial = (0.0, part * 0.8 * 0.5)
-        path = predict(model, [(0.0, 0.0, 0.5)], horizon=3.0, start=before, initial=initial)
-        check_law(np.diff(path.poses[:, 2]) / 0.1, 0.5, 0.8, part)
-
-
-@pytest.mark.parametrize("before", [0.0, 0.1, 0.7])
-def test_limits_keep_the_law(before: float) -> None:
-    for lags, fraction, delay in list(product(LAGS, FRACTIONS, DELAYS))[::7]:
-        model = two_modes(lags, fraction, 0.9, delay, limited=True)
-        for part in PARTS:
-            path = predict(model, [(0.0, 1.0, 0.0)], horizon=2.0, start=before, initial=(part * 0.9, 0.0))
-            check_law(speeds(path.poses, 0.1), 1.0, 0.9, part)
-
-
 def test_rollouts_keep_the_law(subtests: pytest.Subtests) -> None:
     for limited in [False, True]:
         for command in [1.0, -0.7]:
@@ -157,16 +125,6 @@ def test_a_measured_speed_that_contradicts_the_history_is_not_overtaken(delay: f
         for poses in (path.poses, np.vstack((np.zeros((1, 3)), batch[:, :, 0].T))):
             assert speeds(poses, 0.1).max() <= 1.0 + 1e-9
             assert poses[-1, 0] <= 5.0 + 1e-9
-
-
-def test_a_measured_speed_that_the_commands_explain_changes_nothing() -> None:
-    model = two_modes((0.3, 1.5), 0.4, 0.8, 0.2)
-    rows = np.array([(-9.0, 0.0, 0.0), (-2.0, 1.0, 0.0), (-0.6, 0.2, 0.0), (0.0, 0.5, 0.0)])
-    until_now = predict(model, rows, horizon=9.0, start=-9.0).poses[-1]
-    moment = predict(model, rows, horizon=9.0001, start=-9.0).poses[-1] - until_now
-    whole = predict(model, rows, horizon=11.0, start=-9.0).poses[-1]
-    path = predict(model, rows, horizon=2.0, start=0.0, initial=(float(moment[0]) / 1e-4, 0.0))
-    assert path.poses[-1, 0] == pytest.approx(whole[0] - until_now[0], abs=1e-3)
 
 
 def test_without_measured_speeds_the_robot_starts_at_rest() -> None:

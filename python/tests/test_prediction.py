@@ -203,16 +203,6 @@ def sliding() -> Model:
     return make_model(replace(named("ipem-13"), values=SLIDING))
 
 
-def test_level_ground_is_predicted_as_no_ground() -> None:
-    inputs = held(np.arange(0.0, 6.0, 0.5), 1.0, 0.4)
-    level = predict(sliding(), inputs, horizon=3.0, ground=Grade(0.0), at=(3.0, 2.0, 1.0))
-    without = predict(sliding(), inputs, horizon=3.0)
-    assert level.poses == pytest.approx(without.poses, abs=1e-12)
-    assert level.covariance == pytest.approx(without.covariance, abs=1e-4)  # in shorter steps
-    assert without.standing is None
-    assert not without.poses_in_space[:, 2:5].any()
-
-
 def test_a_robot_across_a_slope_slides_downhill_and_turns_its_nose_down() -> None:
     inputs = held(np.arange(0.0, 6.0, 0.5), 1.0, 0.0)
     path = predict(sliding(), inputs, horizon=4.0, ground=Grade(0.15, downhill=-np.pi / 2))

@@ -16,7 +16,6 @@ from slipwise.planning import (
     Start,
     learned_motions,
     rollout,
-    sample_futures,
 )
 from slipwise.prediction import predict
 from slipwise.terrain_ahead import TerrainAhead
@@ -69,20 +68,6 @@ def test_where_it_is_open_what_comes_the_covariance_says_so(model: Model) -> Non
     assert mixed.covariance[-1, 2, 2] > 3.0 * sure.covariance[-1, 2, 2]
     assert new.covariance[-1, 2, 2] > 3.0 * sure.covariance[-1, 2, 2]
     np.testing.assert_allclose(mixed.covariance[5], sure.covariance[5], rtol=0.02, atol=1e-7)
-
-
-@pytest.mark.slow
-def test_rollouts_are_the_predicted_path(model: Model) -> None:
-    body, periods = model.body, 40
-    held = COMMANDS[np.searchsorted(COMMANDS[:, 0], 0.1 * np.arange(periods) + 1e-9, side="right") - 1, 1:]
-    path = predict(body, COMMANDS, horizon=4.0, terrain_ahead=AHEAD)
-    rolled = rollout(body, held[None], 0.1, start=Start(terrain_ahead=AHEAD), covariance=True)
-    assert rolled.path is not None
-    assert rolled.covariance is not None
-    np.testing.assert_allclose(rolled.path[:, :, 0].T, path.poses[1:], atol=2e-3)
-    assert rolled.covariance[5, -1, 0] == pytest.approx(path.covariance[-1, 2, 2], rel=0.2)
-    futures = sample_futures(body, held[None], 0.1, samples=300, seed=1, start=Start(terrain_ahead=AHEAD))
-    assert futures[2, :, -1, 0].mean() == pytest.approx(path.poses[-1, 2], abs=0.05)
 
 
 @pytest.mark.slow

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from limited_drives import CHAIN, CHANNELS, FREE, SIDES, TRACK, search, track_of, wheels_behind
+from limited_drives import CHAIN, FREE, SIDES, TRACK, search, track_of, wheels_behind
 from sample_models import make_model, named
 
 from slipwise import _core
@@ -150,14 +150,13 @@ def without_wheels(log: Log) -> Log:
     return replace(log, runs=tuple(replace(run, wheels=None) for run in log.runs))
 
 
-@pytest.mark.parametrize("limits", [SIDES, CHANNELS], ids=["sides", "channels"])
-def test_limits_are_learned_from_commands_and_poses_alone(limits: _core.CommandLimits) -> None:
+def test_limits_are_learned_from_commands_and_poses_alone() -> None:
+    limits = SIDES
     commands = steps_drive(3, SECONDS)
     log = without_wheels(driven(commands, wheels_behind(limits, commands, 1)))
     learned = calibrate(log, input="command").model
     assert learned.limits is not None
-    if limits is SIDES:
-        assert learned.limits.wheel_separation == pytest.approx(TRACK, rel=0.02)
+    assert learned.limits.wheel_separation == pytest.approx(TRACK, rel=0.02)
     for axis, truth in (
         (learned.limits.speed, limits.speed),
         (learned.limits.yaw_rate, limits.yaw_rate),

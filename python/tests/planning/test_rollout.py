@@ -17,7 +17,7 @@ from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import SettingsError
 from slipwise.ground import Grade
 from slipwise.models import Model
-from slipwise.planning import Costmap, Start, command_buffer, rollout, sample_futures
+from slipwise.planning import Costmap, Start, command_buffer, rollout
 from slipwise.prediction import predict
 
 N, K, DT = 20, 30, 0.1
@@ -156,33 +156,6 @@ def test_buffers_are_filled_again(model: Model, commands: NDArray[np.float64]) -
     assert again.path is not None
     assert fresh is not None
     assert again.path.tobytes() == fresh.tobytes()
-
-
-def test_costs_are_sampled_along_the_path(model: Model, commands: NDArray[np.float64]) -> None:
-    cells = np.arange(80.0).reshape(8, 10)
-    costmap = Costmap(cells, resolution=0.5, origin=(-1.0, -2.0), outside=200.0)
-    found = rollout(model, commands, DT, outputs=("path", "costs"), costmap=costmap)
-    assert found.path is not None
-    assert found.costs is not None
-    column = np.floor((found.path[0] + 1.0) / 0.5).astype(int)
-    row = np.floor((found.path[1] + 2.0) / 0.5).astype(int)
-    inside = (column >= 0) & (column < 10) & (row >= 0) & (row < 8)
-    cost = np.where(inside, cells[row.clip(0, 7), column.clip(0, 9)], 200.0)
-    assert found.costs[0] == pytest.approx(cost.sum(axis=0))
-    assert found.costs[1] == pytest.approx(cost.max(axis=0))
-    assert found.costs[2] == pytest.approx(cost.min(axis=0))
-
-
-def test_sampled_futures_scatter_around_the_rollout(model: Model, commands: NDArray[np.float64]) -> None:
-    few = commands[:2]
-    futures = sample_futures(model, few, DT, samples=400, seed=1)
-    assert futures.shape == (3, 400, K, 2)
-    assert futures.tobytes() == sample_futures(model, few, DT, samples=400, seed=1, threads=2).tobytes()
-    middle = rollout(model, few, DT, covariance=True)
-    assert middle.path is not None
-    assert middle.covariance is not None
-    spread = np.sqrt(middle.covariance[[0, 2, 5], -1])
-    assert (np.abs(futures[:, :, -1].mean(axis=1) - middle.path[:, -1]) < 0.3 * spread + 1e-6).all()
 
 
 @pytest.mark.parametrize(

@@ -74,14 +74,5 @@ def test_ground_never_gives_energy() -> None:
     np.testing.assert_array_equal(resistance[1], 0.0)
 
 
-def test_mirrored_slip_gives_mirrored_force() -> None:
-    velocity, rim_speed = random_states()
-    force = traction_force(LAW, LOAD, velocity, rim_speed)
-    mirrored = traction_force(LAW, LOAD, velocity * [[1], [-1]], rim_speed)
-    np.testing.assert_array_equal(mirrored, force * [[1], [-1]])
-    backwards = traction_force(LAW, LOAD, -velocity, -rim_speed)
-    np.testing.assert_array_equal(backwards, -force)
-
-
 def test_unloaded_wheel_feels_no_force() -> None:
     assert not traction_force(LAW, 0 * LOAD, *random_states()).any()

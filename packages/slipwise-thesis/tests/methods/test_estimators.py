@@ -60,19 +60,6 @@ def run_of(name: str, settings: Settings, windows: WindowSet) -> EstimatorRun:
     return run_estimator(settings.model_copy(update={"estimator": name}), "wheel", windows)
 
 
-def test_every_estimator_learns_the_slip(
-    settings: Settings, windows: WindowSet, subtests: pytest.Subtests
-) -> None:
-    for name in _thesis.estimator_names():
-        with subtests.test(name=name):
-            run = run_of(name, settings, windows)
-            causal, kept = run.posterior(len(windows)), run.kept()
-            for posterior in (causal, kept):
-                assert posterior.mean == pytest.approx(SLIP, abs=0.01)
-                assert posterior.variance_ratio.shape == (2,)
-            assert run.causal == (name != "batch") == np.array_equal(causal.mean, kept.mean)
-
-
 def test_what_batch_knew_on_the_way_never_depends_on_what_came_later(
     settings: Settings, windows: WindowSet
 ) -> None:
@@ -108,15 +95,6 @@ def test_an_estimator_that_does_not_exist_is_refused_with_those_that_do() -> Non
     with pytest.raises(SettingsError, match=r"estimator: .*unknown estimator 'magic'; known are average, "):
         make_settings({"estimator": "magic"})
 
-
-def test_iekf_is_the_filter_that_calibrates_until_that_refits(settings: Settings, windows: WindowSet) -> None:
-    filters = (settings.filter_settings(), settings.average_settings())
-    average = _core.ModelAverage("one", settings.bases(), False, False, False, *filters)
-    estimating = run_of("iekf", settings, windows)
-    for i in range(7):
-        average.learn(windows.input_history(i), windows.segments[i])
-        known, posterior = average.state(), estimating.posterior(i + 1)
-        assert posterior.mean == pytest.approx(np.array(known.estimate.mean), rel=1e-9)
     # Means that agree after each segment have had the same gains; the covariance that the average
     # reports also holds what residuals say of the noise model.
 
@@ -141,10 +119,3 @@ def test_basis_is_that_of_the_settings_and_thesis_estimators_have_no_lag() -> No
     assert estimator_motion("delayed-state", Settings(), "command").size == 14
     assert estimator_motion("ekf-thesis", Settings(), "command").size == 10
     assert estimator_motion("iekf", Settings(), "wheel").clock_offset
-
-
-def test_an_unknown_estimator_is_refused_by_name(settings: Settings) -> None:
-    motion = estimator_motion("iekf", settings, "wheel")
-    known = "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state, batch"
-    with pytest.raises(ValueError, match=known):
-        estimator_learner("magic", motion, settings)
