@@ -17,7 +17,8 @@ slipwise::MotionModel learned_model() {
   const std::vector<std::string> lon{SLIPWISE_TERMS_LON}, lat{SLIPWISE_TERMS_LAT}, ang{SLIPWISE_TERMS_ANG};
   const slipwise::ActuatorParameters actuator{.dynamics = SLIPWISE_HAS_DYNAMICS,
                                               .response = SLIPWISE_HAS_RESPONSE,
-                                              .delays = SLIPWISE_HAS_DELAYS};
+                                              .delays = SLIPWISE_HAS_DELAYS,
+                                              .wheelbase = SLIPWISE_WHEELBASE};
   return {{"learned", lon, lat, ang}, actuator};
 }
 

@@ -21,6 +21,7 @@
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/actuator/input_history.hpp"
+#include "slipwise/actuator/kinematics.hpp"
 #include "slipwise/actuator/measured_start.hpp"
 #include "slipwise/identify/car_curve_filter.hpp"
 #include "slipwise/identify/limit_search.hpp"
@@ -119,6 +120,9 @@ void bind_actuator(nb::module_& m) {
       "commands"_a, "limits"_a, "actuator"_a, "time"_a, "measured"_a,
       "The same where the drive did `measured` at `time` [s], in the stamps of the commands.");
   m.attr("RAMP_PIECE") = kRampPiece;
+  m.attr("STANDING_SPEED") = kStandingSpeed;
+  m.attr("SHOWS_CURVATURE") = kShowsCurvature;
+  m.attr("SHARPEST_TANGENT") = kSharpestTangent;
   m.def(
       "actuator_output",
       [](const InputHistory& inputs, const ActuatorModel& actuator, Array times, const BodyTwist& initial) {

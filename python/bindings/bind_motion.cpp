@@ -135,6 +135,17 @@ void bind_motion(nb::module_& m) {
           },
           "sensor_extrinsics"_a,
           "The same with or without the pose of its pose sensor in base_link as three more parameters.")
+      .def(
+          "with_wheelbase",
+          [](const MotionModel& model, double wheelbase) {
+            ActuatorParameters learned = model.learned();
+            learned.wheelbase = wheelbase;
+            return MotionModel(model.basis(), learned);
+          },
+          "wheelbase"_a,
+          "The same of a robot that steers, whose lags and delays act on the curvature of its path [m]; 0: on the yaw "
+          "rate.")
+      .def_prop_ro("wheelbase", [](const MotionModel& model) { return model.learned().wheelbase; })
       .def_prop_ro("basis", &MotionModel::basis)
       .def_prop_ro("dynamics", [](const MotionModel& model) { return model.learned().dynamics; })
       .def_prop_ro("delays", [](const MotionModel& model) { return model.learned().delays; })

@@ -53,6 +53,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("cascaded", &HypothesisSettings::cascaded)
       .def_rw("direct", &HypothesisSettings::direct)
       .def_rw("baseline", &HypothesisSettings::baseline)
+      .def_rw("wheelbase", &HypothesisSettings::wheelbase)
       .def_prop_ro("several", &HypothesisSettings::several)
       .def_rw("filter", &HypothesisSettings::filter)
       .def_rw("average", &HypothesisSettings::average);

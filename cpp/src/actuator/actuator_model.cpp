@@ -12,6 +12,7 @@
 #include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/axis_stepper.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/actuator/kinematics.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
@@ -50,14 +51,16 @@ Eigen::Matrix<double, 1, N> derivative_between(const Knot& from, const Knot& unt
 /// The samples of one channel as the drive sees them: delayed.
 class DelayedCursor {
  public:
-  DelayedCursor(const InputHistory& inputs, double delay, Eigen::Index delay_index, double start, double known_until)
+  DelayedCursor(const InputHistory& inputs, double wheelbase, double delay, Eigen::Index delay_index, double start,
+                double known_until)
       : inputs_(inputs),
+        wheelbase_(wheelbase),
         delay_(delay),
         index_(delay_index),
         next_(inputs.count_until(start - delay)),
         end_(std::max(next_, inputs.count_until(known_until))) {}
 
-  BodyTwist held() const { return next_ == 0 ? BodyTwist{} : inputs_.sample(next_ - 1); }
+  BodyTwist held() const { return next_ == 0 ? BodyTwist{} : channel_input(inputs_.sample(next_ - 1), wheelbase_); }
   bool before_first() const { return next_ == 0; }
   double next_change() const { return next_ < end_ ? inputs_.time(next_) + delay_ : kNever; }
   Knot change_knot() const { return {next_change(), index_}; }
@@ -66,13 +69,14 @@ class DelayedCursor {
 
   /// Skips samples before `t` that repeat the one held.
   void skip_repeats(double t) {
-    while (next_ > 0 && next_change() < t && inputs_.sample(next_) == held()) {
+    while (next_ > 0 && next_change() < t && inputs_.sample(next_) == inputs_.sample(next_ - 1)) {
       ++next_;
     }
   }
 
  private:
   const InputHistory& inputs_;
+  double wheelbase_;
   double delay_;
   Eigen::Index index_;
   std::size_t next_;
@@ -93,9 +97,10 @@ class ActuatorWalk {
         model_start_(window.initial && window.known ? Knot{window.known->until, kFixed} : start_),
         warm_up_(warm_up()),
         rounding_(warm_up_ > 0.0 ? 0.0 : kSameStamp),
-        cursor_v_(inputs, actuator.delay_v, kSpeedPlaces.delay, model_start_.t - warm_up_ + rounding_, window.end),
-        cursor_omega_(inputs, actuator.delay_omega, kTurnPlaces.delay, model_start_.t - warm_up_ + rounding_,
-                      window.end),
+        cursor_v_(inputs, actuator.wheelbase, actuator.delay_v, kSpeedPlaces.delay,
+                  model_start_.t - warm_up_ + rounding_, window.end),
+        cursor_omega_(inputs, actuator.wheelbase, actuator.delay_omega, kTurnPlaces.delay,
+                      model_start_.t - warm_up_ + rounding_, window.end),
         v_(speed_, kSpeedPlaces),
         vy_(speed_, kSpeedPlaces),
         omega_(turn_, kTurnPlaces) {
@@ -115,7 +120,7 @@ class ActuatorWalk {
     if (window_.initial) {
       start_at(cursor_v_, v_, window_.initial->v);
       start_at(cursor_v_, vy_, window_.initial->vy);
-      start_at(cursor_omega_, omega_, window_.initial->omega);
+      start_turn(*window_.initial);
     }
     if (window_.known && start_.t < model_start_.t) {
       follow_measured(*window_.known->twist, result);
@@ -133,10 +138,15 @@ class ActuatorWalk {
 
   Knot knot_of(double stamp) const { return {stamp - actuator_.clock_offset, kOffset}; }
 
+  bool steers() const { return actuator_.wheelbase > 0.0; }
+
   /// How long the state at the start hangs on earlier inputs: where the drive was measured, its parts alone do.
   double warm_up() const {
-    return window_.initial ? parts_warm_up(speed_, turn_)
-                           : kSettledLags * std::max(speed_.longest_lag(), turn_.longest_lag());
+    if (!window_.initial) {
+      return kSettledLags * std::max(speed_.longest_lag(), turn_.longest_lag());
+    }
+    const double parts = parts_warm_up(speed_, turn_);
+    return steers() ? std::max(parts, kSettledLags * turn_.longest_lag()) : parts;
   }
 
   /// An axis where the actuator starts, as it was measured.
@@ -145,6 +155,16 @@ class ActuatorWalk {
       axis.keep(measured);
     } else {
       axis.measure(measured, !window_.known || !window_.known->any_inputs);
+    }
+  }
+
+  /// The second channel of a measured drive. Commands tell a steering better than a yaw rate does, which may be none
+  /// that was measured, but made of the commanded steering; before any acts, it is what the yaw rate asks for.
+  void start_turn(const BodyTwist& measured) {
+    if (!steers()) {
+      start_at(cursor_omega_, omega_, measured.omega);
+    } else if (cursor_omega_.before_first() && shows_curvature(measured)) {
+      omega_.keep(curvature_of(measured, actuator_.wheelbase));
     }
   }
 
@@ -256,6 +276,7 @@ class ActuatorWalk {
       jacobian(2, kSpeedPlaces.gain) = vy_.by_gain(duration);
       jacobian(3, kTurnPlaces.gain) = omega_.by_gain(duration);
     }
+    follow_kinematics(out);
   }
 
   void linearized_step(const AxisDecay& decay_v, const AxisDecay& decay_omega, const Row& derivative,
@@ -266,6 +287,19 @@ class ActuatorWalk {
     out.steps.push_back({decay_v.fast.duration, forward.value, left.value, turn.value});
     if constexpr (kDerivatives) {
       out.jacobians.emplace_back() << derivative, forward.derivative, left.derivative, turn.derivative;
+    }
+    follow_kinematics(out);
+  }
+
+  /// What the last step does of what its channels did.
+  void follow_kinematics(ActuatorSteps& out) const {
+    if (!steers()) {
+      return;
+    }
+    if constexpr (kDerivatives) {
+      steer(out.steps.back(), out.jacobians.back());
+    } else {
+      steer(out.steps.back());
     }
   }
 

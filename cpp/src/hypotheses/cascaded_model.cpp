@@ -6,15 +6,18 @@
 #include <tuple>
 #include <utility>
 
+#include "slipwise/actuator/kinematics.hpp"
+
 namespace slipwise {
 namespace {
 
-MotionModel joined_model(const MotionModel& slip) {
+MotionModel joined_model(const MotionModel& slip, double wheelbase) {
   return {slip.basis(),
           {.dynamics = true,
            .clock_offset = slip.learned().clock_offset,
            .response = true,
-           .sensor_extrinsics = slip.learned().sensor_extrinsics}};
+           .sensor_extrinsics = slip.learned().sensor_extrinsics,
+           .wheelbase = wheelbase}};
 }
 
 std::vector<Eigen::Index> range(Eigen::Index first, Eigen::Index last) {
@@ -39,8 +42,8 @@ bool stronger(const ChangeTest& a, const ChangeTest& b) {
 
 CascadedModel::CascadedModel() : CascadedModel(ModelAverage(), {}) {}
 
-CascadedModel::CascadedModel(ModelAverage slip, const CausalFilterSettings& settings)
-    : model_(joined_model(slip.model())),
+CascadedModel::CascadedModel(ModelAverage slip, const CausalFilterSettings& settings, double wheelbase)
+    : model_(joined_model(slip.model(), wheelbase)),
       noise_(settings.noise.shape),
       slip_(std::move(slip)),
       actuator_(settings),
@@ -67,6 +70,11 @@ bool CascadedModel::advance_slip() {
 }
 
 void CascadedModel::learn_actuator(const WheelSegment& segment) {
+  if (const double wheelbase = model_.learned().wheelbase; wheelbase > 0.0) {
+    actuator_.learn(channel_inputs(segment.commands, wheelbase), measured_channels(segment.wheels, wheelbase),
+                    segment.start, segment.end);
+    return;
+  }
   actuator_.learn(segment.commands, segment.wheels, segment.start, segment.end);
 }
 

@@ -65,7 +65,8 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
       joint_("auto", settings.bases,
              {.dynamics = settings.dynamics,
               .clock_offset = settings.clock_offset && !settings.dynamics,
-              .sensor_extrinsics = settings.sensor_extrinsics},
+              .sensor_extrinsics = settings.sensor_extrinsics,
+              .wheelbase = settings.dynamics ? settings.wheelbase : 0.0},
              settings.filter, settings.average),
       baseline_(settings.filter.noise),
       bank_(settings.average.surfaces) {
@@ -74,9 +75,11 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
   if (settings.direct && settings.dynamics) {
     attempt(Structure::Direct);
     direct_bases_ = few_bases(settings.bases);
-    direct_.emplace("auto", chosen(settings.bases, direct_bases_),
-                    ActuatorParameters{.sensor_extrinsics = settings.sensor_extrinsics, .delays = true},
-                    settings.filter, settings.average);
+    direct_.emplace(
+        "auto", chosen(settings.bases, direct_bases_),
+        ActuatorParameters{
+            .sensor_extrinsics = settings.sensor_extrinsics, .delays = true, .wheelbase = settings.wheelbase},
+        settings.filter, settings.average);
   }
   if (settings.baseline) {
     attempt(Structure::Baseline);
@@ -86,7 +89,7 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
         ModelAverage("auto", settings.bases,
                      {.clock_offset = settings.clock_offset, .sensor_extrinsics = settings.sensor_extrinsics},
                      settings.filter, settings.average),
-        settings.filter);
+        settings.filter, settings.wheelbase);
   }
   tried_.normalise();
 }

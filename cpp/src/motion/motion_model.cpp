@@ -8,6 +8,9 @@
 #include <initializer_list>
 #include <iterator>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "slipwise/linear/tuning.hpp"
 
@@ -58,6 +61,13 @@ SLIPWISE_TUNING(kShortResponse, 0.03);   // [s]; that much shorter times can har
 
 const ActuatorParameter& actuator_parameter(Eigen::Index row) { return kActuator[static_cast<std::size_t>(row)]; }
 
+/// Where the robot steers, the second channel is that of the steering.
+std::string described(std::string description, bool steers) {
+  constexpr std::string_view kTurn = "yaw rate";
+  const std::size_t at = steers ? description.find(kTurn) : std::string::npos;
+  return at == std::string::npos ? description : description.replace(at, kTurn.size(), "steering");
+}
+
 Eigen::Index place_of(Eigen::Index row) {
   constexpr Eigen::Index kFirstDelay = 2;  // in ActuatorModel's order
   return row < kDelayV ? row : kFirstDelay + row - kDelayV;
@@ -72,6 +82,9 @@ MotionModel::MotionModel() : MotionModel({"none", {}, {}, {}}, {}) {}
 MotionModel::MotionModel(Basis basis, ActuatorParameters learned) : basis_(std::move(basis)), learned_(learned) {
   if (learned_.delays && (learned_.dynamics || learned_.response)) {
     throw std::invalid_argument("a motion model has delays alone, or lags and delays, not both");
+  }
+  if (!(learned_.wheelbase >= 0.0) || !std::isfinite(learned_.wheelbase)) {
+    throw std::invalid_argument("the wheelbase of a motion model must be positive [m], or 0 where nothing steers");
   }
   const auto add = [this](bool wanted, std::initializer_list<Eigen::Index> rows) {
     if (wanted) {
@@ -92,7 +105,7 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
   }
   for (const Eigen::Index row : actuator_rows_) {
     const ActuatorParameter& parameter = actuator_parameter(row);
-    infos.push_back({parameter.name, parameter.unit, parameter.description});
+    infos.push_back({parameter.name, parameter.unit, described(parameter.description, learned_.wheelbase > 0.0)});
   }
   if (learned_.sensor_extrinsics) {
     infos.insert(infos.end(), {{"sensor_x", "m", "how far the pose sensor sits ahead of base_link"},
@@ -104,6 +117,7 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
 
 ActuatorModel MotionModel::actuator(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
   ActuatorModel actuator;
+  actuator.wheelbase = learned_.wheelbase;
   Eigen::Index at = slip_size();
   for (const Eigen::Index row : actuator_rows_) {
     const ActuatorParameter& parameter = actuator_parameter(row);

@@ -215,6 +215,9 @@ LearnedModel MotionLearner::model() const {
 }
 
 std::optional<ActuatorLimits> MotionLearner::find_limits(double wheel_separation) const {
+  if (settings_.hypotheses.wheelbase > 0.0) {
+    return std::nullopt;  // limits are of yaw rates, and this drive is told curvatures
+  }
   const MotionLearner complete = completed();
   const auto cascaded = complete.hypotheses_.of(Structure::Cascaded);
   const std::vector<DrivenSegment> segments(complete.command_segments_.begin(), complete.command_segments_.end());

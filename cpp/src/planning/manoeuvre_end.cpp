@@ -13,6 +13,7 @@
 #include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/axis_stepper.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
+#include "slipwise/actuator/kinematics.hpp"
 #include "slipwise/segment/ground_step.hpp"
 #include "slipwise/segment/path_step.hpp"
 
@@ -149,8 +150,12 @@ class ManoeuvreWalk {
     path.poses.push_back(end_.pose());
   }
 
-  BodyTwist drive() const { return {.v = v_.whole().value, .vy = vy_.whole().value, .omega = omega_.whole().value}; }
-  BodyTwist fast() const { return {.v = v_.fast().value, .vy = vy_.fast().value, .omega = omega_.fast().value}; }
+  BodyTwist drive() const {
+    return {.v = v_.whole().value, .vy = vy_.whole().value, .omega = turning(omega_.whole().value)};
+  }
+  BodyTwist fast() const {
+    return {.v = v_.fast().value, .vy = vy_.fast().value, .omega = turning(omega_.fast().value)};
+  }
   Pose2 pose() const { return end_.pose(); }
   ManoeuvreJacobian jacobian() const { return end_.jacobian(); }
 
@@ -165,14 +170,33 @@ class ManoeuvreWalk {
         held_(std::move(held)),
         v_(started<1>(speed_response(model.actuator()), start.drive.v, commanded.v, fast_of(start, &BodyTwist::v))),
         vy_(started<1>(speed_response(model.actuator()), start.drive.vy, commanded.vy, fast_of(start, &BodyTwist::vy))),
-        omega_(started<kManoeuvreParameters>(yaw_rate_response(model.actuator()), start.drive.omega, commanded.omega,
-                                             fast_of(start, &BodyTwist::omega))),
+        omega_(started_turn(model.actuator(), start, commanded)),
         tilted_(ground != nullptr),
         end_(model, ground) {}
 
   static std::optional<double> fast_of(const ActuatorState& start, double BodyTwist::* channel) {
     return start.fast ? std::optional<double>((*start.fast).*channel) : std::nullopt;
   }
+
+  /// The yaw rate, or the curvature of a drive that steers: that of another plan's end, or else the commanded one.
+  static YawRateAxis started_turn(const ActuatorModel& actuator, const ActuatorState& start,
+                                  const BodyTwist& commanded) {
+    const AxisResponse response = yaw_rate_response(actuator);
+    const std::optional<double> fast = fast_of(start, &BodyTwist::omega);
+    if (!(actuator.wheelbase > 0.0)) {
+      return started<kManoeuvreParameters>(response, start.drive.omega, commanded.omega, fast);
+    }
+    const double told = curvature_of(commanded, actuator.wheelbase);
+    if (!fast || !shows_curvature(start.drive)) {
+      return started<kManoeuvreParameters>(response, response.gain * told, told, std::nullopt);
+    }
+    return started<kManoeuvreParameters>(response, curvature_of(start.drive, actuator.wheelbase), told,
+                                         *fast / start.drive.v);
+  }
+
+  bool steers() const { return actuator_.wheelbase > 0.0; }
+  /// What the drive turns by where its second channel does this.
+  double turning(double channel) const { return steers() ? v_.whole().value * channel : channel; }
 
   /// A time and its derivative by the manoeuvre's length.
   struct Knot {
@@ -196,7 +220,17 @@ class ManoeuvreWalk {
 
   void tell_yaw_rate() {
     const HeldCommand& command = held_.commands[next_omega_++];
-    omega_.hold({command.omega, command.omega_by});
+    if (!steers()) {
+      omega_.hold({command.omega, command.omega_by});
+      return;
+    }
+    const double curvature = curvature_of({.v = command.v, .omega = command.omega}, actuator_.wheelbase);
+    if (command.v == 0.0 || std::abs(curvature) >= sharpest_curvature(actuator_.wheelbase)) {
+      omega_.hold({.value = curvature});
+      return;
+    }
+    omega_.hold(
+        {curvature, (command.omega_by - curvature * command.v_by_length * ManoeuvreRow::Unit(kLength)) / command.v});
   }
 
   template <bool kDerivatives>
@@ -216,10 +250,18 @@ class ManoeuvreWalk {
         StepJacobian jacobian = StepJacobian::Zero();
         jacobian.col(kLength).head<3>() << derivative, forward.derivative, left.derivative;
         jacobian.row(3) = turn.derivative;
-        end_.drive({duration, forward.value, left.value, turn.value}, &jacobian);
+        ActuatorStep step{duration, forward.value, left.value, turn.value};
+        if (steers()) {
+          steer(step, jacobian);
+        }
+        end_.drive(step, &jacobian);
       } else {
-        end_.drive({duration, v_.advance_value(decay_v), vy_.advance_value(decay_v), omega_.advance_value(decay_omega)},
-                   nullptr);
+        ActuatorStep step{duration, v_.advance_value(decay_v), vy_.advance_value(decay_v),
+                          omega_.advance_value(decay_omega)};
+        if (steers()) {
+          steer(step);
+        }
+        end_.drive(step, nullptr);
       }
       if (path_ != nullptr) {
         path_->t.push_back(from.t + (i + 1) * duration);
@@ -248,6 +290,9 @@ PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Ei
   model.check(parameters);
   if (basis_.by_heading()) {
     throw std::invalid_argument("planning knows no heading in the frame of the poses, and a slip term depends on it");
+  }
+  if (model.learned().wheelbase > 0.0 && !unlimited(limits)) {
+    throw std::invalid_argument("limits are of yaw rates, and this model steers; leave them out");
   }
   alpha_ = parameters.head(model.slip_size());
   actuator_ = model.actuator(parameters);

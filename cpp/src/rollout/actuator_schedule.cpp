@@ -70,7 +70,8 @@ ActuatorSchedule schedule_actuator(const ActuatorModel& actuator, double period)
   const double first = std::min(v.rest, omega.rest);
   const double second = std::max(v.rest, omega.rest);
   const bool together = first == second;
-  ActuatorSchedule schedule{period, v, omega, lags(v) || lags(omega), responds(v) || responds(omega), {}, {}, 0, {}};
+  ActuatorSchedule schedule{period, v, omega, lags(v) || lags(omega), responds(v) || responds(omega), {},
+                            {},     0, {},    actuator.wheelbase};
   schedule.lead_in = cut(schedule, first, false, false);
   if (!together) {
     schedule.cycle = cut(schedule, second - first, v.rest == first, omega.rest == first);

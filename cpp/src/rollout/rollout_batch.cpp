@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "slipwise/actuator/kinematics.hpp"
 #include "slipwise/rollout/actuator_start.hpp"
 #include "slipwise/rollout/check_batch.hpp"
 #include "slipwise/rollout/gpu/gpu.hpp"
@@ -42,45 +43,47 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
                        const RolloutOutputs<Scalar>& outputs) {
   const LaneConstants<Scalar>& constants = program.constants<Scalar>();
   const ActuatorSchedule& actuator = program.actuator();
-  LaneJob<Scalar> job{.parts = constants.parts.data(),
-                      .coefficients = constants.coefficients.data(),
-                      .cycle = actuator.lead_in.size(),
-                      .branch = actuator.lead_in.size() + actuator.branch,
-                      .tail = actuator.lead_in.size() + actuator.cycle.size(),
-                      .part_end = constants.parts.size(),
-                      .products = program.products().data(),
-                      .product_count = program.products().size(),
-                      .is_quadratic = program.quadratic().has_value(),
-                      .quadratic = program.quadratic().value_or(LaneQuadratic{}),
-                      .factors = program.slip().factors,
-                      .squared_curvature_speed = static_cast<Scalar>(kCurvatureSpeed * kCurvatureSpeed),
-                      .on_grade = program.setting().on_grade(),
-                      .rise_x = static_cast<Scalar>(program.setting().rise_x),
-                      .rise_y = static_cast<Scalar>(program.setting().rise_y),
-                      .minus_gravity = static_cast<Scalar>(-kStandardGravity),
-                      .edge_count = program.setting().ahead.edges.size(),
-                      .edges = {},
-                      .shift_v = actuator.v.shift,
-                      .shift_omega = actuator.omega.shift,
-                      .lags = actuator.lags,
-                      .responds = actuator.responds,
-                      .limits = program.limited() ? &constants.limits : nullptr,
-                      .pieces = program.pieces(),
-                      .start_row = 0,
-                      .last_row = static_cast<std::ptrdiff_t>(batch.periods) - 1,
-                      .rollouts = batch.rollouts,
-                      .periods = batch.periods,
-                      .v = batch.commands.v,
-                      .omega = batch.commands.omega,
-                      .vy = batch.commands.vy,
-                      .rollout_stride = batch.commands.rollout_stride,
-                      .period_stride = batch.commands.period_stride,
-                      .path = {outputs.x, outputs.y, outputs.theta},
-                      .end = {outputs.end_x, outputs.end_y, outputs.end_theta},
-                      .map = lane_map<Scalar>(outputs.map),
-                      .cost_sum = outputs.cost_sum,
-                      .cost_highest = outputs.cost_highest,
-                      .cost_lowest = outputs.cost_lowest};
+  LaneJob<Scalar> job{
+      .parts = constants.parts.data(),
+      .coefficients = constants.coefficients.data(),
+      .cycle = actuator.lead_in.size(),
+      .branch = actuator.lead_in.size() + actuator.branch,
+      .tail = actuator.lead_in.size() + actuator.cycle.size(),
+      .part_end = constants.parts.size(),
+      .products = program.products().data(),
+      .product_count = program.products().size(),
+      .is_quadratic = program.quadratic().has_value(),
+      .quadratic = program.quadratic().value_or(LaneQuadratic{}),
+      .factors = program.slip().factors,
+      .squared_curvature_speed = static_cast<Scalar>(kCurvatureSpeed * kCurvatureSpeed),
+      .on_grade = program.setting().on_grade(),
+      .rise_x = static_cast<Scalar>(program.setting().rise_x),
+      .rise_y = static_cast<Scalar>(program.setting().rise_y),
+      .minus_gravity = static_cast<Scalar>(-kStandardGravity),
+      .edge_count = program.setting().ahead.edges.size(),
+      .edges = {},
+      .sharpest = static_cast<Scalar>(actuator.wheelbase > 0.0 ? sharpest_curvature(actuator.wheelbase) : 0.0),
+      .shift_v = actuator.v.shift,
+      .shift_omega = actuator.omega.shift,
+      .lags = actuator.lags,
+      .responds = actuator.responds,
+      .limits = program.limited() ? &constants.limits : nullptr,
+      .pieces = program.pieces(),
+      .start_row = 0,
+      .last_row = static_cast<std::ptrdiff_t>(batch.periods) - 1,
+      .rollouts = batch.rollouts,
+      .periods = batch.periods,
+      .v = batch.commands.v,
+      .omega = batch.commands.omega,
+      .vy = batch.commands.vy,
+      .rollout_stride = batch.commands.rollout_stride,
+      .period_stride = batch.commands.period_stride,
+      .path = {outputs.x, outputs.y, outputs.theta},
+      .end = {outputs.end_x, outputs.end_y, outputs.end_theta},
+      .map = lane_map<Scalar>(outputs.map),
+      .cost_sum = outputs.cost_sum,
+      .cost_highest = outputs.cost_highest,
+      .cost_lowest = outputs.cost_lowest};
   for (std::size_t i = 0; i < job.edge_count; ++i) {
     job.edges[i] = static_cast<Scalar>(program.setting().ahead.edges[i]);
   }
@@ -115,6 +118,11 @@ std::size_t first_unused(const LaneJob<Scalar>& job) {
   return static_cast<std::size_t>(std::max(static_cast<std::ptrdiff_t>(job.periods) - unused, std::ptrdiff_t{0}));
 }
 
+/// Whether what a drive holds at the start hangs on commands that are sent later.
+bool hangs_on_commands(const ActuatorSchedule& actuator) {
+  return (actuator.responds || actuator.wheelbase > 0.0) && std::min(actuator.v.shift, actuator.omega.shift) < 0;
+}
+
 /// Moves the block to its place in the batch. What all lanes fraction is set once.
 template <typename Scalar>
 class BlockOfBatch {
@@ -127,7 +135,7 @@ class BlockOfBatch {
         map_(map),
         lanes_(kernel.lanes),
         many_(batch.starts.size() > 1),
-        each_(many_ || (actuator_.responds && std::min(actuator_.v.shift, actuator_.omega.shift) < 0)),
+        each_(many_ || hangs_on_commands(actuator_)),
         commands_(program, kernel, job) {
     point_to_rows(rows_.data(), kMostLanes, block_);
     block_.past_count = batch.past.size() / batch.starts.size();
@@ -180,8 +188,23 @@ class BlockOfBatch {
                             [&](std::ptrdiff_t i) { return command(i, member); });
     };
     return {.v = channel(actuator_.v, &DriveCommand::v),
-            .omega = channel(actuator_.omega, &DriveCommand::omega),
+            .omega = actuator_.wheelbase > 0.0 ? steering_of(now, known_before, command)
+                                               : channel(actuator_.omega, &DriveCommand::omega),
             .vy = program_.sideways() ? channel(actuator_.v, &DriveCommand::vy) : ActuatorStart{}};
+  }
+
+  /// The channel of the curvature: it has followed the commands; without any, the drive shows it, if it is fast enough.
+  template <typename Command>
+  ActuatorStart steering_of(const DriveCommand& now, std::size_t known_before, const Command& command) const {
+    const double wheelbase = actuator_.wheelbase;
+    const BodyTwist drive{.v = now.v, .vy = 0.0, .omega = now.omega};
+    const auto oldest = -static_cast<std::ptrdiff_t>(known_before);
+    const auto curvature = [&](std::ptrdiff_t i) {
+      return curvature_of({.v = command(i, &DriveCommand::v), .omega = command(i, &DriveCommand::omega)}, wheelbase);
+    };
+    return known_before == 0 && acts_at(actuator_.omega, actuator_.period, 0) >= 0.0 && shows_curvature(drive)
+               ? actuator_start(actuator_, actuator_.omega, curvature_of(drive, wheelbase), oldest, curvature)
+               : followed_start(actuator_, actuator_.omega, oldest, curvature);
   }
 
   Drives drives_behind_limits(std::size_t rollout, LimitedStart start) const {
@@ -313,9 +336,10 @@ void rollout_batch(const RolloutProgram& program, const RolloutBatch<Scalar>& ba
   check_axes(program, batch);
   const LaneJob<Scalar> job = job_of(program, batch, outputs);
   const bool out_of_sight = options.gpu != nullptr && lies_on_gpu(batch.commands.v);
-  if (out_of_sight && program.actuator().responds && std::min(job.shift_v, job.shift_omega) < 0) {
+  if (out_of_sight && hangs_on_commands(program.actuator())) {
     throw std::invalid_argument(
-        "where a drive with a slow mode acts before it is commanded, its commands must lie in the processor's memory");
+        "where a drive with a slow mode or a steering acts before it is commanded, its commands must lie in the "
+        "processor's memory");
   }
   const unsigned faults = options.gpu != nullptr ? roll_on(*options.gpu, program, batch, outputs.map, job)
                                                  : roll_blocks(program, batch, outputs.map, job, options);

@@ -32,6 +32,9 @@ SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::Vect
   if (!std::isfinite(setting.gx) || !std::isfinite(setting.gy)) {
     throw std::invalid_argument("the gravity along the robot's axes must be finite");
   }
+  if (model.learned().wheelbase > 0.0 && (!unlimited(setting.limits) || setting.sideways)) {
+    throw std::invalid_argument("a drive that steers has no limits of yaw rates and no sideways speed; leave them out");
+  }
   const double steepness = std::hypot(setting.rise_x, setting.rise_y);
   if (!(steepness <= kSteepest)) {
     throw std::invalid_argument("the ground must not be steeper than 60 degrees");

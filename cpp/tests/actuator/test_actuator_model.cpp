@@ -19,7 +19,7 @@ namespace {
 
 using Actuator = Eigen::Matrix<double, kActuatorParameters, 1>;
 
-ActuatorModel actuator_of(const Eigen::VectorXd& p) {
+ActuatorModel actuator_of(const Eigen::VectorXd& p, double wheelbase = 0.0) {
   return {.time_constant_v = p[0],
           .time_constant_omega = p[1],
           .delay_v = p[2],
@@ -30,7 +30,8 @@ ActuatorModel actuator_of(const Eigen::VectorXd& p) {
           .slow_fraction_v = p[7],
           .slow_fraction_omega = p[8],
           .slow_time_constant_v = p[9],
-          .slow_time_constant_omega = p[10]};
+          .slow_time_constant_omega = p[10],
+          .wheelbase = wheelbase};
 }
 
 /// Totals of duration, forward, left, turn; and a moment that tells early steps from late ones.
@@ -121,18 +122,21 @@ std::vector<Case> sample_cases() {
 
 TEST_CASE("drive steps are linearised exactly by every parameter of the actuator") {
   for (const Case& c : sample_cases()) {
-    CAPTURE(c.name);
-    const InputHistory inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, c.period, 200);
-    const auto value = [&](const Eigen::VectorXd& p) {
-      return totals(actuator_steps(inputs, actuator_of(p), c.window));
-    };
-    const ActuatorSteps linearized = linearize_actuator_steps(inputs, actuator_of(c.parameters), c.window);
-    CHECK((totals(linearized) - value(c.parameters)).norm() == 0.0);
-    const auto numeric = tests::finite_difference(value, c.parameters, 5e-4);
-    // Where there is no slow mode, its time constants cannot move: it would appear.
-    const Eigen::Index moving = c.parameters.tail<2>().isZero() ? kActuatorParameters - 2 : kActuatorParameters;
-    CHECK(tests::jacobian_error(totals_jacobian(linearized).leftCols(moving), numeric.leftCols(moving), 0.1) <
-          tests::kDerivativeTolerance);
+    for (const double wheelbase : {0.0, 0.4}) {
+      CAPTURE(c.name);
+      CAPTURE(wheelbase);
+      const InputHistory inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, c.period, 200);
+      const auto value = [&](const Eigen::VectorXd& p) {
+        return totals(actuator_steps(inputs, actuator_of(p, wheelbase), c.window));
+      };
+      const ActuatorSteps linearized = linearize_actuator_steps(inputs, actuator_of(c.parameters, wheelbase), c.window);
+      CHECK((totals(linearized) - value(c.parameters)).norm() == 0.0);
+      const auto numeric = tests::finite_difference(value, c.parameters, 5e-4);
+      // Where there is no slow mode, its time constants cannot move: it would appear.
+      const Eigen::Index moving = c.parameters.tail<2>().isZero() ? kActuatorParameters - 2 : kActuatorParameters;
+      CHECK(tests::jacobian_error(totals_jacobian(linearized).leftCols(moving), numeric.leftCols(moving), 0.1) <
+            tests::kDerivativeTolerance);
+    }
   }
 }
 

@@ -50,8 +50,17 @@ inline SampleModel responding_model(const Basis& basis) {
   return {basis.name() + " with response", std::move(motion), std::move(parameters)};
 }
 
+/// The same model of a robot that steers.
+inline SampleModel steering(const SampleModel& model) {
+  ActuatorParameters learned = model.motion.learned();
+  learned.wheelbase = 0.4;
+  return {model.name + ", steering", MotionModel(model.motion.basis(), learned), model.parameters};
+}
+
 inline std::vector<SampleModel> sample_models() {
-  std::vector<SampleModel> models;
+  const Basis bent = named_basis("odd-even-10");
+  std::vector<SampleModel> models{steering(sample_model(bent, false)), steering(sample_model(bent, true)),
+                                  steering(responding_model(bent))};
   for (const Basis& basis : all_bases()) {
     models.push_back(sample_model(basis, false));
     models.push_back(sample_model(basis, true));

@@ -138,6 +138,15 @@ inline std::vector<SampleChain> sample_chains() {
           {"delays alone, one of them negative", {.delays = true}, {0.13, -0.02}}};
 }
 
+/// The same of drives that steer.
+inline std::vector<SampleChain> steering_chains() {
+  std::vector<SampleChain> chains = sample_chains();
+  for (SampleChain& chain : chains) {
+    chain.learned.wheelbase = 0.4;
+  }
+  return chains;
+}
+
 /// What a rollout knows of its drive: a speed at the start, and that any inputs may follow.
 inline MeasuredActuator measured_start(const MotionModel& model, const Eigen::VectorXd& parameters) {
   return {.twist = nullptr, .until = -model.actuator(parameters).clock_offset, .any_inputs = true};

@@ -23,15 +23,16 @@ const std::vector<DriveCommand> kPast{{0.5, 0.1}, {0.6, 0.0}, {0.5, 0.2}, {0.4, 
 /// Largest difference of position and heading to the integrator over some rollouts and periods.
 template <typename Scalar>
 double error(const MotionModel& model, const Eigen::VectorXd& parameters, const tests::SampleCommands<Scalar>& commands,
-             InstructionLevel level) {
+             InstructionLevel level, const std::vector<RolloutStart>& start = kStart,
+             const std::vector<DriveCommand>& past = kPast) {
   const RolloutProgram program(model, parameters, {commands.period, 0.3, -0.2});
-  const auto paths = tests::roll(program, commands.batch(kStart, kPast), {.threads = 1, .level = level});
-  const BodyTwist drive{kStart[0].drive.v, 0.0, kStart[0].drive.omega};
+  const auto paths = tests::roll(program, commands.batch(start, past), {.threads = 1, .level = level});
+  const BodyTwist drive{start[0].drive.v, 0.0, start[0].drive.omega};
   // Where commands act early, the integrator of a shorter segment leaves out those that a rollout already knows.
   const std::size_t fewest = program.actuator().v.shift < 0 ? commands.periods : 1;
   double worst = 0.0;
   for (std::size_t n = 0; n < commands.rollouts; n += 5) {
-    const InputHistory history = commands.input_history(n, kPast);
+    const InputHistory history = commands.input_history(n, past);
     for (std::size_t k = commands.periods; k >= fewest; k /= 3) {
       const Segment segment{.start = 0.0,
                             .end = commands.period * static_cast<double>(k),
@@ -76,6 +77,50 @@ TEST_CASE("rollouts of 5 s are those of the plain integrator in every basis and 
       }
     }
   }
+}
+
+TEST_CASE(
+    "rollouts of a drive that steers are those of the plain integrator, whether it is fast at the start or slow") {
+  const std::vector<RolloutStart> slow{{{1.0, -2.0, 0.5}, {0.04, 0.3}}};
+  tests::SampleCommands<double> commands(37, 100, kPeriod);
+  for (std::size_t i = 5; i < commands.v.size(); i += 37) {  // some stand now and then, with straight or turned wheels
+    commands.v[i] = i % 3 == 0 ? 0.0 : i % 3 == 1 ? kStandingSpeed : commands.v[i];
+    commands.omega[i] *= i % 3 == 1 ? kStandingSpeed : 1.0;
+  }
+  tests::SampleCommands<float> in_float(37, 100, kPeriod);
+  std::ranges::transform(commands.v, in_float.v.begin(), [](double v) { return static_cast<float>(v); });
+  std::ranges::transform(commands.omega, in_float.omega.begin(), [](double v) { return static_cast<float>(v); });
+  for (const Basis& basis : {named_basis("edd-2"), named_basis("odd-even-10")}) {
+    for (const tests::SampleChain& actuator : tests::steering_chains()) {
+      CAPTURE(std::string(actuator.name));
+      const MotionModel model(basis, actuator.learned);
+      const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
+      for (const InstructionLevel level : kInstructionLevels) {
+        for (const auto& start : {kStart, slow}) {
+          if (has_instruction_level(level)) {
+            CAPTURE(name_of(level));
+            CHECK(error(model, parameters, commands, level, start) < 1e-9);
+            if (!actuator.learned.clock_offset) {  // else commands act early, and steps differ where nothing acts
+              CHECK(error(model, parameters, commands, level, start, {}) < 1e-5);
+            }
+            CHECK(error(model, parameters, in_float, level, start) < 5e-5);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a drive that steers has neither limits of yaw rates nor a sideways speed") {
+  const MotionModel model(named_basis("edd-2"), {.wheelbase = 0.4});
+  const Eigen::Vector2d slip(0.1, -0.1);
+  CHECK_THROWS_AS(RolloutProgram(model, slip, {.period = kPeriod, .limits = {.speed = {.saturation = 1.0}}}),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(RolloutProgram(model, slip, {.period = kPeriod, .sideways = true}), std::invalid_argument);
+  RolloutBatch<double> batch = tests::SampleCommands<double>(1, 1, kPeriod).batch(kStart);
+  const double standing = 0.0, unknown = std::nan("");
+  batch.commands = {&standing, &unknown, 1, 1};
+  CHECK_THROWS_AS(tests::roll(RolloutProgram(model, slip, {kPeriod}), batch), std::invalid_argument);
 }
 
 TEST_CASE("periods so long that a robot turns round within them are exact as well") {

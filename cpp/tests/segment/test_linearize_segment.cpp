@@ -43,7 +43,12 @@ std::vector<Case> sample_chains() {
       {"dynamics, response and clock offset", {.dynamics = true, .clock_offset = true, .response = true}, all},
       {"sensor_extrinsics", {.sensor_extrinsics = true}, mount},
       {"everything", {.dynamics = true, .clock_offset = true, .response = true, .sensor_extrinsics = true}, observed},
-      {"delays", {.delays = true}, Eigen::Vector2d(0.0827, -0.0133)}};
+      {"delays", {.delays = true}, Eigen::Vector2d(0.0827, -0.0133)},
+      {"steering", {.dynamics = true, .wheelbase = 0.4}, dynamics},
+      {"steering, response and clock offset",
+       {.dynamics = true, .clock_offset = true, .response = true, .wheelbase = 0.4},
+       all},
+      {"steering, delays", {.delays = true, .wheelbase = 0.4}, Eigen::Vector2d(0.0827, -0.0133)}};
 }
 
 Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& actuator) {

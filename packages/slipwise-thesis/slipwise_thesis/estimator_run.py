@@ -12,6 +12,7 @@ from slipwise.calibration.learner import Posterior, Progress
 from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
+from slipwise.segments import wheelbase_of
 from slipwise_thesis.estimators import estimator_learner, estimator_motion, fed_windows
 
 
@@ -36,7 +37,7 @@ def run_estimator(
         SettingsError: a basis or a term is unknown.
     """
     name = settings.estimator
-    motion = estimator_motion(name, settings, input_name)
+    motion = estimator_motion(name, settings, input_name, wheelbase_of([run.run for run in windows.drive]))
     learner, fed = estimator_learner(name, motion, settings), fed_windows(name, settings, windows)
     causal = not estimator_info(name).off_line
     history = _empty_history(fed, motion)

@@ -23,13 +23,19 @@ def estimator_basis(settings: Settings) -> str:
     return ESTIMATOR_BASIS if settings.basis == "auto" else settings.basis
 
 
-def estimator_motion(name: str, settings: Settings, input_name: str) -> _core.MotionModel:
-    """Return the model that an estimator learns; those of the thesis have neither actuator nor offset."""
+def estimator_motion(
+    name: str, settings: Settings, input_name: str, wheelbase: float | None = None
+) -> _core.MotionModel:
+    """Return the model that an estimator learns; those of the thesis have neither actuator nor offset.
+
+    With a wheelbase [m] the robot is commanded to steer, and lags act on its steering.
+    """
     chosen = settings.model_copy(update={"basis": estimator_basis(settings)})
     thesis = _thesis.learns_overlapping_segments(name)
     dynamics, offset = learned_parts(settings, input_name)
     motion = _core.MotionModel(chosen.bases()[0], dynamics and not thesis, offset and not thesis)
-    return motion.with_extrinsics(settings.sensor_extrinsics.learn and not thesis)
+    motion = motion.with_extrinsics(settings.sensor_extrinsics.learn and not thesis)
+    return motion.with_wheelbase(wheelbase or 0.0) if motion.dynamics else motion
 
 
 def learned_parts(settings: Settings, input_name: str) -> tuple[bool, bool]:

@@ -10,6 +10,7 @@ from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.source_tables import core_sources
 from slipwise.errors import SettingsError
+from slipwise.logs import LogOptions
 
 STRAIGHT_SIDE_SLIP = 0.03  # rad, standard deviation of a side slip that positions do not see
 
@@ -28,6 +29,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
     car: _core.CarPrior | None = None,
     sources: Sequence[str] = (),
     gyro_alone: bool = False,
+    wheelbase: float | None = None,
 ) -> _core.LearnerSettings:
     """Return the core's settings.
 
@@ -40,6 +42,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         car: what is taken of a car whose commands are throttle and steering, before it drives.
         sources: names of the sources of poses, where sources or fixes are distinguished; the first's first.
         gyro_alone: no poses come, and turns of a gyro alone are learned from.
+        wheelbase: of a robot that is commanded to steer [m]: lags act on its steering.
 
     Raises:
         SettingsError: a basis or a term is unknown, a force is to be learned beside surfaces, or settings
@@ -56,6 +59,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         stream.sources = core_sources(sources, settings.pose_sources, settings.prior.clock_offset_std)
     hypotheses.bases = [settings.body_force.added_to(basis) for basis in settings.bases()]
     hypotheses.dynamics = from_commands
+    hypotheses.wheelbase = wheelbase or 0.0
     hypotheses.clock_offset, hypotheses.sensor_extrinsics = (
         settings.learn_clock_offset,
         settings.sensor_extrinsics.learn,
@@ -108,6 +112,16 @@ def _change_prior(hypotheses: _core.HypothesisSettings, **numbers: float) -> Non
 
 def car_of(settings: Settings) -> _core.CarPrior | None:
     """Return what is taken of a car commanded by throttle and steering, where the settings name one."""
-    named = settings.live.vehicle
-    car = (settings.log_options() if named is None else settings.log_options(vehicle=named)).car
+    car = _reading(settings).car
     return None if car is None else _core.CarPrior(car.top_speed, car.curvature, None)
+
+
+def wheelbase_of(settings: Settings) -> float | None:
+    """Return the wheelbase [m] of a robot that is commanded to steer, where the settings name one."""
+    options = _reading(settings)
+    return options.wheelbase if options.car is None else None
+
+
+def _reading(settings: Settings) -> LogOptions:
+    named = settings.live.vehicle
+    return settings.log_options() if named is None else settings.log_options(vehicle=named)

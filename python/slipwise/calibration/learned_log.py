@@ -22,7 +22,7 @@ from slipwise.calibration.surface_course import course_of
 from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Run, has_course
 from slipwise.models.schema import MeasuredBody
-from slipwise.segments import car_prior, recording_of, source_names
+from slipwise.segments import car_prior, recording_of, source_names, wheelbase_of
 
 Floats = NDArray[np.float64]
 
@@ -109,6 +109,7 @@ def new_learner(
         car=car_prior(runs),
         sources=source_names(runs),
         gyro_alone=gyro_alone(runs),
+        wheelbase=None if car_prior(runs) is not None else wheelbase_of(runs),
     )
     return _core.MotionLearner(core)
 

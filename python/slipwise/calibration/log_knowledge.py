@@ -111,7 +111,8 @@ def robot_model(
     else:
         dynamics = hypotheses.dynamics
         model = _core.MotionModel(basis, dynamics, hypotheses.clock_offset and not dynamics)
-    return model.with_extrinsics(hypotheses.sensor_extrinsics)
+    wheelbase = hypotheses.wheelbase if hypotheses.dynamics else 0.0
+    return model.with_extrinsics(hypotheses.sensor_extrinsics).with_wheelbase(wheelbase)
 
 
 def _robot(

@@ -16,7 +16,7 @@ from slipwise.models.model import Model
 from slipwise.models.schema import LabelSection, SurfaceSection
 
 _VEHICLE = ("vehicle", "sensor_extrinsics")  # sections of the settings that are the robot's
-_FORM = ("dynamics", "delays", "clock_offset", "response", "sensor_extrinsics")  # of the model
+_FORM = ("dynamics", "delays", "clock_offset", "response", "sensor_extrinsics", "wheelbase")  # of the model
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,8 @@ def merge_surfaces(first: Model, second: Model) -> tuple[Model, tuple[MergedSurf
     """
     _refuse_others(first, second)
     settings, structure = settings_of(first), structure_of(first)
-    core = core_settings(settings, first.content.input, JUDGING_HORIZONS, remember=True)
+    wheelbase = first.content.wheelbase
+    core = core_settings(settings, first.content.input, JUDGING_HORIZONS, remember=True, wheelbase=wheelbase)
     learner = _core.MotionLearner(core)
     begin_with(learner, first, first.content.input, wheels=first.content.response or structure == CASCADED)
     try:

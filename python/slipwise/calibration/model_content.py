@@ -47,6 +47,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         clock_offset=motion.clock_offset,
         response=motion.response,
         sensor_extrinsics=motion.sensor_extrinsics,
+        wheelbase=motion.wheelbase or None,
         limit_gains=gains,
         **table.content(),
         noise=_noise(learned, facts.settings),

@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
-from slipwise.calibration.core_settings import car_of, core_settings
+from slipwise.calibration.core_settings import car_of, core_settings, wheelbase_of
 from slipwise.calibration.judge import Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned import Learned
@@ -100,6 +100,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
                 car=car_of(self._settings),
                 sources=sources,
                 gyro_alone=gyro_alone,
+                wheelbase=wheelbase_of(self._settings),
             )
         )
         self._gyro_alone = gyro_alone

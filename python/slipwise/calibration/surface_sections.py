@@ -190,6 +190,11 @@ def begin_with(learner: _core.MotionLearner, model: Model, input_name: str, *, w
             f"the model to begin with is of {model.content.input}s, and these logs are of {input_name}s",
             advice=f"say --input {model.content.input}, where the logs have them",
         )
+    if (model.content.wheelbase or 0.0) != learner.settings.hypotheses.wheelbase:
+        raise ModelError(
+            "lags of the model to begin with act on another thing than here: its wheelbase is another",
+            advice="give the wheelbase that it was learned with, or learn the memory again",
+        )
     known = known_before(model)
     ours = {basis.name for basis in learner.settings.hypotheses.bases}
     theirs = model.content.surfaces[0].memory

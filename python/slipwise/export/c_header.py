@@ -37,8 +37,10 @@ _MADE = {
     "abs_vy": "SLIPWISE_MATH(fabs)(vy)",
     "third": "vy * (3 * v * v - vy * vy) / (v * v + vy * vy + SLIPWISE_R({regular}))",
 }
-#: Parts of the templates that only the header of a robot that drives sideways has.
+#: Parts of the templates that only the header of a robot that drives sideways, or of one that steers, has.
 _SIDEWAYS = re.compile(r"@SIDE\{(.*?)\}@", re.DOTALL)
+_STEERS = re.compile(r"@STEER\{(.*?)\}@", re.DOTALL)
+_TURNS = re.compile(r"@TURNS\{(.*?)\}@", re.DOTALL)  # of one that does not steer
 _PROBE = 2.0**-30  # m/s, far below the speed that regularises the curvature
 
 
@@ -68,9 +70,14 @@ def c_header(model: Model, origin: list[str]) -> str:
         "SHIFTS": shifts(model),
         "NOISE": noise(model),
         "COVARIANCE": covariance(model),
+        "STANDING": repr(_core.STANDING_SPEED),
+        "SHOWS": repr(_core.SHOWS_CURVATURE),
+        "TANGENT": repr(_core.SHARPEST_TANGENT),
     }
     for name, text in parts.items():
         template = template.replace(f"@{name}@", text)
+    steers = bool(model.motion.wheelbase)
+    template = _TURNS.sub("" if steers else r"\1", _STEERS.sub(r"\1" if steers else "", template))
     return _SIDEWAYS.sub(r"\1" if axes_of(model).sideways else "", template)
 
 
@@ -79,9 +86,10 @@ def _define(name: str, value: float, comment: str) -> str:
 
 
 def _constants(model: Model) -> str:
-    actuator = actuator_of(model)
+    actuator, wheelbase = actuator_of(model), model.motion.wheelbase
+    turn = "steering" if wheelbase else "yaw rate"
     named: list[tuple[str, float, str, str]] = []
-    for place, what, channel in (("V", "speed", actuator.v), ("OMEGA", "yaw rate", actuator.omega)):
+    for place, what, channel in (("V", "speed", actuator.v), ("OMEGA", turn, actuator.omega)):
         named += [
             (f"DELAY_{place}", channel.delay.value, f"[s] transport delay of the {what}", "delay"),
             (f"GAIN_{place}", channel.gain.value, f"drive over input, of the {what}", "gain"),
@@ -109,6 +117,7 @@ def _constants(model: Model) -> str:
         _define(name, value, what + how.get(f"{part}_{name.rpartition('_')[2].lower()}", ""))
         for name, value, what, part in named
     ]
+    lines.append(_define("WHEELBASE", wheelbase, "[m] of a robot that steers; 0: it does not"))
     slip = model.content.parameters[: model.motion.slip_size]
     lines += [_define(f"P{i}", p.value, f"{p.name} [{p.unit}]{how[p.name]}") for i, p in enumerate(slip)]
     return "\n".join(lines)

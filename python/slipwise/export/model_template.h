@@ -56,7 +56,7 @@ enum slipwise_status {
 };
 
 typedef struct {
-  slipwise_real t, v,@SIDE{ vy,}@ omega; /* [s], [m/s],@SIDE{ [m/s] to the left,}@ [rad/s] */
+  slipwise_real t, v,@SIDE{ vy,}@ omega; /* [s], [m/s],@SIDE{ [m/s] to the left,}@ [rad/s]@STEER{; in a ring, the curvature [1/m]}@ */
 } slipwise_command;
 
 /* A ring of commands in order of time, in memory of the caller. It must reach back by the delay, and by eight lags
@@ -93,7 +93,19 @@ static inline const slipwise_command *slipwise_command_at(const slipwise_command
   return &commands->slots[(commands->first + i) % commands->capacity];
 }
 
-/* Adds a command, and drops the oldest where the ring is full. Returns 0, or -1 where it is refused: it is not later
+@STEER{/* A drive that steers: its second channel is the curvature of its path [1/m]; the yaw rate follows from it. A command
+ * that stands with turned wheels has a speed of SLIPWISE_STANDING_SPEED and a yaw rate of so much times the curvature;
+ * one of zeros stands with straight wheels. */
+#define SLIPWISE_STANDING_SPEED SLIPWISE_R(@STANDING@) /* [m/s] */
+#define SLIPWISE_SHOWS_CURVATURE SLIPWISE_R(@SHOWS@)   /* [m/s] a slower drive does not show its curvature */
+#define SLIPWISE_SHARPEST (SLIPWISE_R(@TANGENT@) / SLIPWISE_WHEELBASE) /* [1/m] */
+
+static inline slipwise_real slipwise_curvature(slipwise_real v, slipwise_real omega) {
+  const slipwise_real curvature = v > 0 || v < 0 ? omega / v : SLIPWISE_R(0);
+  return curvature > SLIPWISE_SHARPEST ? SLIPWISE_SHARPEST : curvature < -SLIPWISE_SHARPEST ? -SLIPWISE_SHARPEST : curvature;
+}
+
+}@/* Adds a command, and drops the oldest where the ring is full. Returns 0, or -1 where it is refused: it is not later
  * than the last one, or not finite. */
 static inline int slipwise_command_push(slipwise_commands *commands, slipwise_real t, slipwise_real v,
                                         @SIDE{slipwise_real vy, }@slipwise_real omega) {
@@ -114,7 +126,9 @@ static inline int slipwise_command_push(slipwise_commands *commands, slipwise_re
   slot->v = v;
 @SIDE{  slot->vy = vy;
 }@  slot->omega = omega;
-  return 0;
+@STEER{  slot->omega = slipwise_curvature(v, omega);
+  slot->v = SLIPWISE_MATH(fabs)(v) > SLIPWISE_STANDING_SPEED ? v : SLIPWISE_R(0);
+}@  return 0;
 }
 
 /* How one channel of the drive answers its input: two lags side by side; without a slow lag there is one. */
@@ -306,7 +320,8 @@ static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, in
   if (!walk->window->drive || slipwise_acts(&walk->yaw_input)) {
     mean.omega = slipwise_channel_step(&walk->yaw_rate, &walk->model->yaw, yaw, duration) / duration;
   }
-  if (moves) {
+@STEER{  mean.omega *= mean.v; /* a curvature until here */
+}@  if (moves) {
     slipwise_advance(walk, mean, duration);
   }
 }
@@ -365,7 +380,7 @@ static inline int slipwise_run(const slipwise_model *model, const slipwise_comma
                                const slipwise_window *window, slipwise_noise *noise, slipwise_walk *walk) {
   const slipwise_path nowhere = {{0, 0, 0}, 1, 0};
   const slipwise_real speed_lag = slipwise_start_lag(&model->speed, window->drive != 0);
-  const slipwise_real yaw_lag = slipwise_start_lag(&model->yaw, window->drive != 0);
+  const slipwise_real yaw_lag = slipwise_start_lag(&model->yaw, @STEER{0}@@TURNS{window->drive != 0}@);
   const slipwise_real start = window->start;
   slipwise_real early;
   slipwise_start at;
@@ -392,9 +407,12 @@ static inline int slipwise_run(const slipwise_model *model, const slipwise_comma
                       slipwise_acts(&walk->speed_input));
 @SIDE{    slipwise_measured(&walk->side, &model->speed, window->drive->vy, slipwise_held(&walk->speed_input).vy,
                       slipwise_acts(&walk->speed_input));
-}@    slipwise_measured(&walk->yaw_rate, &model->yaw, window->drive->omega, slipwise_held(&walk->yaw_input).omega,
+}@@TURNS{    slipwise_measured(&walk->yaw_rate, &model->yaw, window->drive->omega, slipwise_held(&walk->yaw_input).omega,
                       slipwise_acts(&walk->yaw_input));
-  }
+}@@STEER{    if (!slipwise_acts(&walk->yaw_input) && SLIPWISE_MATH(fabs)(window->drive->v) >= SLIPWISE_SHOWS_CURVATURE) {
+      slipwise_measured(&walk->yaw_rate, &model->yaw, slipwise_curvature(window->drive->v, window->drive->omega), 0, 0);
+    } /* else it has followed the commands, which tell a steering better than a yaw rate does */
+}@  }
   slipwise_cover(walk, start, window->end, 1);
   return SLIPWISE_OK;
 }
@@ -406,7 +424,8 @@ static inline void slipwise_results(const slipwise_walk *walk, slipwise_pose *po
     drive->v = walk->speed.fast + walk->speed.slow;
 @SIDE{    drive->vy = walk->side.fast + walk->side.slow;
 }@    drive->omega = walk->yaw_rate.fast + walk->yaw_rate.slow;
-  }
+@STEER{    drive->omega *= drive->v;
+}@  }
 }
 
 /* Predicts where the robot is at window->end, seen from where it is at window->start. `drive` becomes the drive at the

@@ -15,7 +15,7 @@ from slipwise.live.samples import Command, Gyro, Pose, Wheels
 from slipwise.logs.corrections import late_by
 from slipwise.logs.fixes import fix_of_status
 from slipwise.logs.joints import SideMotion
-from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
+from slipwise.logs.kinematics import twist_from_steering, twist_from_wheels
 from slipwise.logs.messages import (
     ACKERMANN,
     COMMAND_VALUES,
@@ -65,7 +65,7 @@ def to_command(kind: str, options: LogOptions) -> ToCommand:
 
     def steering(message: Any, t: float) -> Command:
         v, steer = (np.array([value]) for value in values(message))
-        omega = omega_from_steering(v, steer, wheelbase=wheelbase)
+        v, omega = twist_from_steering(v, steer, wheelbase=wheelbase)
         return Command(t, scale_v * float(v[0]), scale_omega * float(omega[0]))
 
     return steering

@@ -11,7 +11,7 @@ from slipwise.errors import LogError
 from slipwise.logs.fixes import status_codes
 from slipwise.logs.header_clock import BagClocks
 from slipwise.logs.joints import speeds_from_angles
-from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
+from slipwise.logs.kinematics import twist_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
 from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples, select
@@ -87,7 +87,7 @@ def command_stream(context: BagContext, samples: Samples, kind: str) -> RawStrea
             "steering commands need the wheelbase", where=samples.topic, advice="give --wheelbase in metres"
         )
     v, steer = samples.values.T
-    omega = omega_from_steering(v, steer, wheelbase=context.options.wheelbase)
+    v, omega = twist_from_steering(v, steer, wheelbase=context.options.wheelbase)
     return context.stream("commands", samples, {"v": v, "omega": omega})
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from slipwise import _core
 from slipwise.logs.log import Floats
 
@@ -20,7 +22,10 @@ def omega_from_curvature(v: Floats, curvature: Floats) -> Floats:
     return curvature * v
 
 
-def omega_from_steering(v: Floats, steer: Floats, *, wheelbase: float) -> Floats:
-    """Return the yaw rate [rad/s] of a car from its speed [N] in m/s and steering angle [N] in rad."""
+def twist_from_steering(v: Floats, steer: Floats, *, wheelbase: float) -> tuple[Floats, Floats]:
+    """Return (v [m/s], omega [rad/s]) of a car from its speed [N] in m/s and steering angle [N] in rad.
+
+    Where it stands with turned wheels, v is a nanometre a second, and omega over it says how far.
+    """
     twists: Floats = _core.Ackermann(wheelbase).twists(v, steer)
-    return twists[:, 1]
+    return np.ascontiguousarray(twists[:, 0]), np.ascontiguousarray(twists[:, 1])

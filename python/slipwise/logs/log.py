@@ -56,6 +56,7 @@ class Inputs:
     vy: Floats  # [N] m/s, to the left
     omega: Floats  # [N] rad/s, counter-clockwise
     car: CarCommands | None = None  # throttle and steering, where v and omega are about what they do
+    wheelbase: float | None = None  # m, of commands to a robot that steers
 
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "v", "vy", "omega"))
@@ -244,7 +245,9 @@ def _check_series(series: Inputs | Poses | Forces, *, required: tuple[str, ...])
     name = type(series).__name__
     length = len(series.t)
     for column in (
-        column for column in fields(series) if column.init and column.name not in ("course", "car")
+        column
+        for column in fields(series)
+        if column.init and column.name not in ("course", "car", "wheelbase")
     ):
         values = getattr(series, column.name)
         if values is None:

@@ -147,10 +147,19 @@ def _completed(log: Log, options: LogOptions) -> Log:
     log = replace(log, sideways=options.sideways) if options.sideways else log
     log = with_ended_commands(log, options.command_timeout)
     if options.car is None:
-        return log
+        return log if options.wheelbase is None else _steered(log, options.wheelbase)
     from slipwise.logs.car_commands import with_car_commands
 
     return with_car_commands(log, options)
+
+
+def _steered(log: Log, wheelbase: float) -> Log:
+    """Say of all commands that they are to a robot that steers."""
+    runs = tuple(
+        run if run.commands is None else replace(run, commands=replace(run.commands, wheelbase=wheelbase))
+        for run in log.runs
+    )
+    return replace(log, runs=runs)
 
 
 def _named(log: Log, file: Path, path: Path) -> Log:

@@ -11,7 +11,7 @@ import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.column_names import listed
-from slipwise.logs.kinematics import omega_from_curvature, omega_from_steering, twist_from_wheels
+from slipwise.logs.kinematics import omega_from_curvature, twist_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
 from slipwise.logs.options import LogOptions
@@ -118,7 +118,7 @@ def command_columns(
         notes += [f"{table.path.name}: {alone}" for alone in _without_speed(table, options)]
         return None
     v = table.numbers(forward, tally)
-    omega = _command_omega(table, v, options, tally, notes)
+    v, omega = _turning_commands(table, v, options, tally, notes)
     if omega is None:
         if "odo_v" in names or "wheel_left" in names:
             notes.append(f"{table.path.name}: {forward} has no cmd_omega beside it and is not used")
@@ -248,9 +248,9 @@ def _unused_because(name: str, names: Collection[str], options: LogOptions) -> s
     return ""
 
 
-def _command_omega(
+def _turning_commands(
     table: Columns, v: Floats, options: LogOptions, tally: Tally, notes: list[str]
-) -> Floats | None:
+) -> tuple[Floats, Floats | None]:
     """Take cmd_omega; where it is empty the curvature (thesis 3.2), and then the steering angle."""
     names = table.names
     omega = table.numbers("cmd_omega", tally) if "cmd_omega" in names else None
@@ -258,10 +258,13 @@ def _command_omega(
         turned = omega_from_curvature(v, table.numbers("cmd_curvature", tally))
         omega = _filled(omega, turned, f"{table.path.name}: cmd_omega from cmd_curvature and speed", notes)
     if "cmd_steer" in names and options.wheelbase is not None:
-        steered = omega_from_steering(v, table.numbers("cmd_steer", tally), wheelbase=options.wheelbase)
+        speed, steered = twist_from_steering(
+            v, table.numbers("cmd_steer", tally), wheelbase=options.wheelbase
+        )
         note = f"{table.path.name}: cmd_omega from cmd_steer and wheelbase {options.wheelbase} m"
+        v = speed if omega is None else np.where(np.isnan(omega), speed, v)
         omega = _filled(omega, steered, note, notes)
-    return omega
+    return v, omega
 
 
 def _filled(omega: Floats | None, other: Floats, note: str, notes: list[str]) -> Floats:

@@ -65,7 +65,8 @@ def _cut(inputs: Inputs | None, low: float, high: float) -> Inputs | None:
         return None
     part = _held_part(inputs.t, low, high)
     t, v, vy, omega = (column[part] for column in (inputs.t, inputs.v, inputs.vy, inputs.omega))
-    cut = Inputs(t, v, vy, omega, None if inputs.car is None else inputs.car.between(part))
+    car = None if inputs.car is None else inputs.car.between(part)
+    cut = replace(inputs, t=t, v=v, vy=vy, omega=omega, car=car)
     return cut if len(cut) else None
 
 

@@ -52,7 +52,7 @@ def differences(first: Model, second: Model) -> tuple[Difference, ...]:
 
     Raises:
         ModelError: one was learned from commands, the other from wheel speeds, or one is of a car that is
-            commanded by throttle and steering.
+            commanded by throttle and steering, or whose lags act on its steering.
     """
     if first.content.input != second.content.input:
         raise ModelError(
@@ -63,6 +63,11 @@ def differences(first: Model, second: Model) -> tuple[Difference, ...]:
         raise ModelError(
             "one model takes throttle and steering, the other speeds and yaw rates",
             advice="compare models that were learned from the same input",
+        )
+    if (first.content.wheelbase is None) != (second.content.wheelbase is None):
+        raise ModelError(
+            "the lags of one model act on the steering, those of the other on the yaw rate",
+            advice="learn both with the wheelbase, or neither",
         )
     rows = [_paired(*gains) for gains in zip(_gains(first), _gains(second), strict=True)]
     rows += _curve_rows(first, second)

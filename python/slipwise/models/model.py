@@ -131,7 +131,7 @@ class Model:
             motion = _core.MotionModel.with_delays(basis)
         else:
             motion = _core.MotionModel(basis, content.dynamics, content.clock_offset)
-        return motion.with_extrinsics(content.sensor_extrinsics)
+        return motion.with_extrinsics(content.sensor_extrinsics).with_wheelbase(content.wheelbase or 0.0)
 
     @cached_property
     def body(self) -> Model:
@@ -292,7 +292,7 @@ class Model:
         content = self.content.model_dump(mode="json")
         if not content["verdict"]["force"]:
             del content["verdict"]["force"]
-        for key in ("surfaces", "labels", "body_force", "limit_gains", "branches", "message"):
+        for key in ("surfaces", "labels", "body_force", "wheelbase", "limit_gains", "branches", "message"):
             if not content[key]:
                 del content[key]
         content["range"] = {key: value for key, value in content["range"].items() if value is not None}

@@ -274,6 +274,7 @@ class ModelFile(Section):
     clock_offset: bool  # the offset between inputs and poses is a parameter
     response: bool = False  # gain and slow mode of the drive are parameters, learned from wheel speeds
     sensor_extrinsics: bool = False  # the pose of the pose sensor in base_link is three parameters
+    wheelbase: Positive | None = None  # m, of a robot that steers: lags act on its steering
     limit_gains: Pair | None = None  # of speed and yaw rate behind the drive's limits, where it has some
     parameters: list[Parameter]
     covariance: list[list[Finite]]
@@ -322,6 +323,8 @@ class ModelFile(Section):
         limited = any(row.stage == "limits" for row in self.parameters)
         if limited and not self.dynamics:
             raise ValueError("limits are of commands, and this model has no lag and delay of commands")
+        if limited and self.wheelbase is not None:
+            raise ValueError("limits are of yaw rates, and lags of a robot that steers act on its steering")
         if limited != (self.limit_gains is not None):
             raise ValueError("limit_gains belong to limits of the drive, and these to them")
         return self

@@ -12,6 +12,7 @@ from slipwise.segments.windows import (
     recording_of,
     recording_rows,
     rejections,
+    wheelbase_of,
 )
 
 __all__ = [
@@ -26,4 +27,5 @@ __all__ = [
     "rejections",
     "source_names",
     "sourced_rows",
+    "wheelbase_of",
 ]

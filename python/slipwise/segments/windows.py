@@ -125,6 +125,12 @@ def car_prior(runs: Sequence[Run], held: _core.CarCurves | None = None) -> _core
     return next((car.prior(held) for car in cars if car is not None), None)
 
 
+def wheelbase_of(runs: Sequence[Run]) -> float | None:
+    """Return the wheelbase [m] of a robot that steers, where commands are to one."""
+    known = (run.commands.wheelbase for run in runs if run.commands is not None)
+    return next((wheelbase for wheelbase in known if wheelbase is not None), None)
+
+
 def cut_windows(
     runs: Sequence[Run], settings: _core.StreamSettings, held: _core.CarCurves | None = None
 ) -> Windows:

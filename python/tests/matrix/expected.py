@@ -24,11 +24,7 @@ REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
 )
 
 #: Cells that are wrong, by why they are; a test turns up when its cell is mended.
-WRONG: dict[str, str] = {
-    "the lags stand behind the kinematics": """
-        steering:predict steering:rollout steering:c-header steering:to-mppi steering:to-px4
-        steering:to-ardupilot""",
-}
+WRONG: dict[str, str] = {}
 
 
 def refusal(situation: Situation, use: str) -> str | None:

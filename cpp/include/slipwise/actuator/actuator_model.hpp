@@ -15,7 +15,8 @@ namespace slipwise {
 /// Parameters of the actuator; the defaults are the identity. vy goes the way of v.
 /// A channel's drive is gain * input, delayed; the fraction `slow_fraction` of it goes through the slow lag, the rest
 /// through the lag. Two lags side by side are a second-order response: what a velocity controller with an integral part
-/// does.
+/// does. Where the drive steers, all of the yaw rate's is of the curvature of the path in its place, and the yaw rate
+/// follows behind the lags (kinematics.hpp).
 struct ActuatorModel {
   double time_constant_v = 0.0;           ///< time constant of the speed [s]
   double time_constant_omega = 0.0;       ///< time constant of the yaw rate [s]
@@ -28,8 +29,9 @@ struct ActuatorModel {
   double slow_fraction_omega = 0.0;       ///< of the yaw rate [-]
   double slow_time_constant_v = 0.0;      ///< slow time constant of the speed [s]; without one there is no slow mode
   double slow_time_constant_omega = 0.0;  ///< slow time constant of the yaw rate [s]
+  double wheelbase = 0.0;                 ///< of a drive that steers [m], which is no parameter; 0 where it does not
 };
-inline constexpr Eigen::Index kActuatorParameters = 11;  ///< in the order of the fields above
+inline constexpr Eigen::Index kActuatorParameters = 11;  ///< the fields above in their order, but for the wheelbase
 
 /// What was measured of the drive: its twist until a moment in input stamps, such as wheel speeds until now.
 struct MeasuredActuator {

@@ -27,8 +27,8 @@ struct WheelSegment {
 class CascadedModel {
  public:
   CascadedModel();
-  /// `slip` has learned nothing yet; its inputs are wheel speeds.
-  CascadedModel(ModelAverage slip, const CausalFilterSettings& settings);
+  /// `slip` has learned nothing yet; its inputs are wheel speeds. With a wheelbase [m] the commands steer.
+  CascadedModel(ModelAverage slip, const CausalFilterSettings& settings, double wheelbase = 0.0);
 
   /// Begins to learn the slip from a segment whose inputs are wheel speeds; `advance_slip` does a piece of it, and says
   /// whether there is more.

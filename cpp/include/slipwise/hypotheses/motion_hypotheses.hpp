@@ -34,6 +34,8 @@ struct HypothesisSettings {
   bool cascaded = true;  ///< from commands, once wheel speeds come: also learn the actuator from these
   bool direct = true;    ///< from commands: also try slip and delays, no lag
   bool baseline = true;  ///< also try the kinematic baseline
+  /// From commands to a robot that steers, whose lags and delays act on the curvature of its path [m]; 0: it does not.
+  double wheelbase = 0.0;
   CausalFilterSettings filter = {};
   ModelAverageSettings average = {};
 

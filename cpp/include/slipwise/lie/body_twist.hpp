@@ -13,4 +13,8 @@ struct BodyTwist {
   bool operator==(const BodyTwist&) const = default;
 };
 
+/// A car that stands has a twist of this speed, so that its yaw rate over it still says how the wheels are turned
+/// [m/s].
+inline constexpr double kStandingSpeed = 1e-9;
+
 }  // namespace slipwise

@@ -22,6 +22,9 @@ struct ActuatorParameters {
   bool response = false;           ///< gain, and a slow mode with its fraction and time constant, per channel
   bool sensor_extrinsics = false;  ///< where the pose sensor sits on the robot
   bool delays = false;             ///< delay per channel alone: no actuator model follows it
+  /// Of a robot that steers, whose lags and delays act on the curvature of its path [m], which is no parameter; 0: on
+  /// the yaw rate.
+  double wheelbase = 0.0;
 };
 
 inline constexpr Eigen::Index kExtrinsicsParameters = 3;
@@ -38,7 +41,8 @@ double log_time_derivative(double seconds);
 class MotionModel {
  public:
   MotionModel();  ///< the kinematic baseline: no slip, nothing learned
-  /// \throws std::invalid_argument when delays alone are wanted together with lags, gains or a slow mode.
+  /// \throws std::invalid_argument when delays alone are wanted together with lags, gains or a slow mode, or the
+  /// wheelbase is negative or not finite.
   MotionModel(Basis basis, ActuatorParameters learned);
 
   /// What the constructor takes.

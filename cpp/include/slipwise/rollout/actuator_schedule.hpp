@@ -52,6 +52,7 @@ struct ActuatorSchedule {
   std::vector<PeriodPart> cycle;
   std::size_t branch;            ///< the part of the cycle in place of which the tail leads to the period's end
   std::vector<PeriodPart> tail;  ///< empty where the cycle ends with the period
+  double wheelbase = 0.0;  ///< of a drive that steers [m]: `omega` is the channel of its curvature; 0: it does not
 };
 
 /// The same steps that actuator_steps takes for commands sent every `period` seconds.

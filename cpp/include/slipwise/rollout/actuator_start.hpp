@@ -78,4 +78,17 @@ ActuatorStart actuator_start(const ActuatorSchedule& actuator, const ChannelTimi
   return {.commanded = keeping, .fast = drive - slow, .slow = slow};
 }
 
+/// Nothing was measured of the channel: it has followed the commands before it, from rest.
+template <typename Command>
+ActuatorStart followed_start(const ActuatorSchedule& actuator, const ChannelTiming& channel, std::ptrdiff_t oldest,
+                             const Command& command) {
+  const AxisResponse& response = channel.response;
+  const double warm_up = kSettledLags * response.longest_lag();
+  const StartInputs<Command> inputs{channel, actuator.period, oldest, 0.0, command};
+  const double slow = response.gain * response.fraction();
+  return {.commanded = 0.0,
+          .fast = response.fast_fraction() * inputs.lagged(response.time_constant, warm_up),
+          .slow = slow != 0.0 ? slow * inputs.lagged(response.slow_time_constant, warm_up) : 0.0};
+}
+
 }  // namespace slipwise

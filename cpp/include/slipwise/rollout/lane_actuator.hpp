@@ -87,6 +87,44 @@ SLIPWISE_LANES void tell(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& bl
   ++channel.next;
 }
 
+/// Nothing, where a car only stands with turned wheels.
+template <class Vector, typename Scalar>
+SLIPWISE_LANES void drop_standing_speed(Scalar standing, Vector& v) {
+  Vector one, zero;
+  fill(Scalar{1}, one);
+  fill(Scalar{0}, zero);
+  v = v * sign(larger(magnitude(v) - standing, zero), one);
+}
+
+/// Curvature of twists [1/m], 0 where they stand; what is not finite stays so.
+template <class Vector, typename Scalar>
+SLIPWISE_LANES void find_curvature(const Vector& v, const Vector& omega, Scalar sharpest, Vector& curvature) {
+  Vector one, low, high;
+  fill(Scalar{1}, one);
+  fill(-sharpest, low);
+  fill(sharpest, high);
+  const Vector moves = any_nonzero(v, v, one);
+  const Vector ratio = omega / (v + (one - moves)) * moves;
+  curvature = smaller(larger(ratio, low), high) + ((v - v) + (omega - omega));
+}
+
+/// The next command of a drive that steers begins to act in the channel of its curvature. Before any was sent, it is a
+/// curvature already.
+template <class L, Actuator kActuator, typename Scalar = L::Scalar>
+SLIPWISE_LANES void tell_curvature(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                                   const CommandSource<Scalar>& speed, const CommandSource<Scalar>& turn,
+                                   ChannelLanes<L, kActuator>& channel) {
+  typename L::Vector v, omega;
+  read_commands<L>(job, block, turn, channel.next, omega);
+  if (channel.next < 0 && block.past_count == 0) {
+    copy(omega, channel.input);
+  } else {
+    read_commands<L>(job, block, speed, channel.next, v);
+    find_curvature(v, omega, job.sharpest, channel.input);
+  }
+  ++channel.next;
+}
+
 template <class L, Actuator kActuator, typename Scalar = L::Scalar>
 SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
                                   const CommandSource<Scalar>& source, std::ptrdiff_t shift,

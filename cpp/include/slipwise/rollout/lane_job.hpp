@@ -91,6 +91,7 @@ struct LaneJob {
   Scalar minus_gravity;      ///< [m/s^2]
   std::size_t edge_count;    ///< where slip becomes another along the path; after a part's coefficients stand
   Scalar edges[kMostEdges];  ///< what they change by at each of these distances [m]
+  Scalar sharpest;           ///< curvature of a drive that steers, whose channel `omega` is [1/m]; 0: it does not steer
   std::ptrdiff_t shift_v, shift_omega;
   bool lags;
   bool responds;  ///< some channel has a gain or a slow mode

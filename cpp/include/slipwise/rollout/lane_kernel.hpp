@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "slipwise/lie/body_twist.hpp"
 #include "slipwise/rollout/lane_actuator.hpp"
 #include "slipwise/rollout/lane_ahead.hpp"
 #include "slipwise/rollout/lane_grade.hpp"
@@ -18,7 +19,8 @@
 namespace slipwise {
 
 /// How slip is found: a program of products, one of second degree in speed and curvature (thesis 5.1), or products with
-/// all that is rarer: a sideways speed, gravity on a plane that is not level, and surfaces that the robot comes to.
+/// all that is rarer: a sideways speed, a drive that steers, gravity on a plane that is not level, and surfaces that
+/// the robot comes to.
 enum class Slip : std::uint8_t { Products, Quadratic, Any };
 
 /// A robot in every lane: its drive and where it is.
@@ -58,6 +60,11 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
   typename L::Vector mean_omega;
   advance<L, kActuator, true>(part.v, robot.v, mean_v);
   advance<L, kActuator, false>(part.omega, robot.omega, mean_omega);
+  if constexpr (kSlip == Slip::Any) {
+    if (job.sharpest > 0) {
+      mean_omega = mean_v * mean_omega;
+    }
+  }
   const Scalar* coefficients = job.coefficients + part.first_coefficient;
   if constexpr (kSlip == Slip::Quadratic) {
     quadratic_tangent<L>(job, coefficients, mean_v, mean_omega, tangent);
@@ -109,6 +116,11 @@ SLIPWISE_LANES void start_robot(const LaneJob<Scalar>& job, const LaneBlock<Scal
   start_channel(job, block, sources.omega, job.shift_omega, robot.omega);
   start_path<L>(block, robot.path);
   if constexpr (kSlip == Slip::Any) {
+    if (job.sharpest > 0) {
+      drop_standing_speed(static_cast<Scalar>(kStandingSpeed), robot.v.input);
+      robot.omega.next = job.start_row - job.shift_omega - 1;
+      tell_curvature(job, block, sources.v, sources.omega, robot.omega);
+    }
     if (job.vy != nullptr) {
       start_channel(job, block, sources.vy, job.shift_v, robot.vy);
     }
@@ -124,13 +136,20 @@ SLIPWISE_LANES void tell_robot(const LaneJob<Scalar>& job, const LaneBlock<Scala
   if (kActuator == Actuator::None || part.next_v) {
     tell(job, block, sources.v, robot.v);
     if constexpr (kSlip == Slip::Any) {
+      if (job.sharpest > 0) {
+        drop_standing_speed(static_cast<Scalar>(kStandingSpeed), robot.v.input);
+      }
       if (job.vy != nullptr) {
         tell(job, block, sources.vy, robot.vy);
       }
     }
   }
   if (kActuator == Actuator::None || part.next_omega) {
-    tell(job, block, sources.omega, robot.omega);
+    if (kSlip == Slip::Any && job.sharpest > 0) {
+      tell_curvature(job, block, sources.v, sources.omega, robot.omega);
+    } else {
+      tell(job, block, sources.omega, robot.omega);
+    }
   }
 }
 
@@ -207,7 +226,7 @@ SLIPWISE_LANES Actuator actuator_of(const LaneJob<Scalar>& job) {
 /// Whether it is one of the rarer jobs.
 template <typename Scalar>
 SLIPWISE_LANES bool needs_any(const LaneJob<Scalar>& job) {
-  return job.on_grade || job.edge_count > 0 || job.vy != nullptr;
+  return job.on_grade || job.edge_count > 0 || job.vy != nullptr || job.sharpest > 0;
 }
 
 template <class Level, Slip kSlip, typename Scalar>

@@ -20,9 +20,11 @@ struct Ackermann {
     }
   }
 
-  /// `v` [m/s] at the rear axle, `steer` [rad] of the middle of the front axle, to the left.
+  /// `v` [m/s] at the rear axle, `steer` [rad] of the middle of the front axle, to the left. Standing with turned
+  /// wheels it creeps by kStandingSpeed, so that the twist says how these are turned.
   BodyTwist twist(double v, double steer) const {
-    return {.v = v, .vy = 0.0, .omega = v * std::tan(steer) / wheelbase};
+    const double known = v == 0.0 && steer != 0.0 ? kStandingSpeed : v;
+    return {.v = known, .vy = 0.0, .omega = known * std::tan(steer) / wheelbase};
   }
 };
 

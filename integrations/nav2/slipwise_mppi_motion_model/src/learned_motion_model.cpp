@@ -41,9 +41,10 @@ class LearnedMotionModel : public mppi::MotionModel {
  private:
   static slipwise::RolloutProgram compiled(double period) {
     const std::vector<std::string> lon{SLIPWISE_TERMS_LON}, lat{SLIPWISE_TERMS_LAT}, ang{SLIPWISE_TERMS_ANG};
-    const slipwise::MotionModel model(
-        {"learned", lon, lat, ang},
-        {.dynamics = SLIPWISE_HAS_DYNAMICS, .response = SLIPWISE_HAS_RESPONSE, .delays = SLIPWISE_HAS_DELAYS});
+    const slipwise::MotionModel model({"learned", lon, lat, ang}, {.dynamics = SLIPWISE_HAS_DYNAMICS,
+                                                                   .response = SLIPWISE_HAS_RESPONSE,
+                                                                   .delays = SLIPWISE_HAS_DELAYS,
+                                                                   .wheelbase = SLIPWISE_WHEELBASE});
     const std::vector<double> values{SLIPWISE_PARAMETERS};
     const slipwise::CommandLimits limits{.speed = {SLIPWISE_LIMITS_SPEED},
                                          .yaw_rate = {SLIPWISE_LIMITS_YAW_RATE},
