@@ -48,16 +48,22 @@ Eigen::Matrix<double, 1, N> derivative_between(const Knot& from, const Knot& unt
   return row;
 }
 
+/// By how much a channel is delayed [s], and where that stands among the actuator's parameters.
+struct ChannelDelay {
+  double seconds;
+  Eigen::Index parameter;
+};
+
 /// The samples of one channel as the drive sees them: delayed.
 class DelayedCursor {
  public:
-  DelayedCursor(const InputHistory& inputs, double wheelbase, double delay, Eigen::Index delay_index, double start,
+  DelayedCursor(const InputHistory& inputs, double wheelbase, const ChannelDelay& delay, double start,
                 double known_until)
       : inputs_(inputs),
         wheelbase_(wheelbase),
-        delay_(delay),
-        index_(delay_index),
-        next_(inputs.count_until(start - delay)),
+        delay_(delay.seconds),
+        index_(delay.parameter),
+        next_(inputs.count_until(start - delay.seconds)),
         end_(std::max(next_, inputs.count_until(known_until))) {}
 
   BodyTwist held() const { return next_ == 0 ? BodyTwist{} : channel_input(inputs_.sample(next_ - 1), wheelbase_); }
@@ -97,9 +103,9 @@ class ActuatorWalk {
         model_start_(window.initial && window.known ? Knot{window.known->until, kFixed} : start_),
         warm_up_(warm_up()),
         rounding_(warm_up_ > 0.0 ? 0.0 : kSameStamp),
-        cursor_v_(inputs, actuator.wheelbase, actuator.delay_v, kSpeedPlaces.delay,
+        cursor_v_(inputs, actuator.wheelbase, {actuator.delay_v, kSpeedPlaces.delay},
                   model_start_.t - warm_up_ + rounding_, window.end),
-        cursor_omega_(inputs, actuator.wheelbase, actuator.delay_omega, kTurnPlaces.delay,
+        cursor_omega_(inputs, actuator.wheelbase, {actuator.delay_omega, kTurnPlaces.delay},
                       model_start_.t - warm_up_ + rounding_, window.end),
         v_(speed_, kSpeedPlaces),
         vy_(speed_, kSpeedPlaces),

@@ -69,7 +69,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
 
     Args:
         model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
-            those of a car with a steering angle are v and v tan(angle) / wheelbase. Those of a
+            those of a car with a steering angle are v and v tan(angle) / wheelbase, whose lags act on
+            speed and steering. Those of a
             model of throttle and steering are these, in [-1, 1], as the past of the start is.
         commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`, from when the
             robot is at the start by the clock of the inputs; see `command_buffer`. Of a
