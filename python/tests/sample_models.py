@@ -39,6 +39,7 @@ class Made:
     clock_offset: float | None = None
     limits: Mapping[str, Mapping[str, float]] | None = None  # of the drive: kinds and values by axis
     car: _core.CarCurves | None = None  # commands are throttle and steering
+    wheelbase: float | None = None  # m, of a robot that steers
     sensor_extrinsics: tuple[float, float, float] | None = None  # of the pose sensor: x, y [m], yaw [rad]
     fraction: float = 0.05
     psd_motion: float = 1e-3
@@ -105,7 +106,7 @@ def make_model(made: Made) -> Model:
         motion = _core.MotionModel.with_delays(made.basis)
     else:
         motion = _core.MotionModel(made.basis, made.commands, offset)
-    motion = motion.with_extrinsics(made.sensor_extrinsics is not None)
+    motion = motion.with_extrinsics(made.sensor_extrinsics is not None).with_wheelbase(made.wheelbase or 0.0)
     sensor = made.sensor_extrinsics or (0.0, 0.0, 0.0)
     values = dict(zip(("sensor_x", "sensor_y", "sensor_yaw"), sensor, strict=True))
     values |= {"clock_offset": made.clock_offset or 0.0}
@@ -146,6 +147,7 @@ def make_model(made: Made) -> Model:
         "delays": made.delays is not None,
         "clock_offset": made.clock_offset is not None,
         "sensor_extrinsics": made.sensor_extrinsics is not None,
+        "wheelbase": made.wheelbase,
         "parameters": parameters,
         "covariance": (made.std**2 * np.eye(len(names))).tolist(),
         "noise": {

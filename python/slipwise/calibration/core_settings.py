@@ -119,7 +119,7 @@ def car_of(settings: Settings) -> _core.CarPrior | None:
 def wheelbase_of(settings: Settings) -> float | None:
     """Return the wheelbase [m] of a robot that is commanded to steer, where the settings name one."""
     options = _reading(settings)
-    return options.wheelbase if options.car is None else None
+    return None if options.car is not None else settings.live.wheelbase or options.wheelbase
 
 
 def _reading(settings: Settings) -> LogOptions:

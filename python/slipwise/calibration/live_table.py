@@ -81,6 +81,7 @@ class LiveTable(_Table):
     gyro_alone: bool = False  # no poses come, and turns of a gyro are learned from
     sources: list[str] = []  # of poses, where there are several: the first first; fixes need one at least
     vehicle: str | None = None  # a car that is commanded by throttle and steering, as --vehicle says
+    wheelbase: float | None = None  # m, of a robot that is commanded to steer, as --wheelbase says
     attitude: bool = False  # poses have a true roll and pitch: terms of gravity are tried
     sideways: bool = False  # the robot drives sideways too: terms of its sideways speed are tried
     # Read for one release from files that have them:

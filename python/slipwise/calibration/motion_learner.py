@@ -61,6 +61,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         attitude: bool = False,
         sources: Sequence[str] = (),
         gyro_alone: bool = False,
+        wheelbase: float | None = None,
     ) -> None:
         """Start with nothing learned.
 
@@ -74,6 +75,8 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             sources: names of the sources of poses, if there are several or fixes differ. The first
                 is the one that predictions start from and are judged by; one may be enough.
             gyro_alone: no poses will come: turns of a gyro (`push_gyro`) are all that is learned from.
+            wheelbase: of a robot that is commanded to steer [m]: delay and lag act on its steering. By
+                default that of the vehicle in the settings.
 
         Raises:
             SettingsError: there is no such input, basis or term, two sources have one name, or the
@@ -90,6 +93,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
                 advice=f"leave out estimator: {AVERAGE!r} learns from one measurement at a time",
             )
         self._input, self._settings = input, for_ground(settings, slopes=attitude, sideways=False)
+        self._wheelbase = wheelbase_of(self._settings) if wheelbase is None else wheelbase
         self._core = _core.MotionLearner(
             core_settings(
                 self._settings,
@@ -100,7 +104,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
                 car=car_of(self._settings),
                 sources=sources,
                 gyro_alone=gyro_alone,
-                wheelbase=wheelbase_of(self._settings),
+                wheelbase=self._wheelbase,
             )
         )
         self._gyro_alone = gyro_alone
@@ -321,6 +325,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             "positions": self._positions,
             "sources": list(self._sources),
             "gyro_alone": self._gyro_alone,
+            "wheelbase": self._wheelbase,
             "remember": self._remember,
             "start": None if self._start is None else self._start.to_yaml(),
         }
@@ -349,6 +354,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
                 positions=bool(facts["positions"]),
                 sources=[str(name) for name in facts.get("sources", [])],
                 gyro_alone=bool(facts.get("gyro_alone")),
+                wheelbase=facts.get("wheelbase"),
             )
             if learner._core.save() != begun:
                 raise ValueError("it is of other settings than it says")

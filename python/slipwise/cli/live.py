@@ -121,6 +121,8 @@ def live(
         robot = open_robot(chosen, log_options, source, say=shown.say)
         if log_options.car is not None:  # commands are throttle and steering
             chosen = live_settings(chosen, {"vehicle": log_options.vehicle})
+        elif log_options.wheelbase is not None:  # commands steer
+            chosen = live_settings(chosen, {"wheelbase": log_options.wheelbase})
         if robot.coming is not None:
             chosen = live_settings(chosen, robot.coming.settings())
         watchers = watchers_for(shown, chosen.live)

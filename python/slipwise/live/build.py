@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from slipwise.calibration import Settings
+from slipwise.calibration.core_settings import wheelbase_of
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.sloping_ground import for_ground
 from slipwise.errors import SettingsError
@@ -117,6 +118,7 @@ def _new_learner(input_name: str, settings: Settings, before: Model | None, *, w
         positions=live.positions,
         sources=live.sources,
         gyro_alone=live.gyro_alone,
+        wheelbase=wheelbase_of(settings),
     )
     if before is not None:
         learner.begin_with(before, wheels=wheels)

@@ -14,6 +14,7 @@ from typing import IO
 
 from slipwise import _core
 from slipwise.calibration import Settings
+from slipwise.calibration.core_settings import wheelbase_of
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.errors import OutputError, SettingsError
 from slipwise.files import output_errors, read_whole, write_text_whole, write_whole
@@ -41,6 +42,8 @@ class CacheKey:
         text = json.dumps(settings.model_dump(mode="json", exclude={"log"}), sort_keys=True)
         text += "with a memory of surfaces" if settings.live.memory else ""
         text += "".join(f" source {name}" for name in settings.live.sources)
+        wheelbase = wheelbase_of(settings)
+        text += "" if wheelbase is None else f" steers with a wheelbase of {wheelbase!r} m"
         digest = sha256(text.encode()).hexdigest()[:16]
         return cls(vehicle, input_name, settings.basis, SCHEMA_VERSION, digest)
 

@@ -201,6 +201,24 @@ def test_header_has_gain_and_slow_part(compiled: Compile, offset: float | None) 
     assert np.abs(expected(plain, commands, windows[0]) - poses[0]).max() > 0.05
 
 
+@pytest.mark.parametrize("number", ["float", "double"])
+@pytest.mark.parametrize("response", [False, True])
+def test_header_of_a_robot_that_steers(compiled: Compile, response: bool, number: str) -> None:
+    made = named("odd-even-10", lon__V=-0.05, lat__w=0.1, ang__w=-0.4)
+    made = replace(made, commands=True, response=response)
+    model = make_model(replace(made, wheelbase=0.5))
+    commands = commands_of(seed=21)
+    commands[::7, 1:] = (0.0, 0.0)  # it stands with straight wheels, and with turned ones
+    commands[3::7, 1:] = (_core.STANDING_SPEED, 0.7 * _core.STANDING_SPEED)
+    windows = [Window(4.0, 9.0), Window(3.0, 8.0, drive=(0.4, -0.3)), Window(6.0, 7.5, drive=(0.05, 0.3))]
+    windows += [Window(0.0, 5.0, drive=drive) for drive in (None, (0.4, -0.3), (0.05, 0.3))]
+    _, rows = compiled(model, number).run(commands, windows)
+    poses = np.array([expected(model, commands, window) for window in windows])
+    assert not rows[:, 0].any()
+    assert np.abs(rows[:, 1:4] - poses).max() < TOLERANCE[number]
+    assert np.abs(expected(make_model(made), commands, windows[0]) - poses[0]).max() > 0.05
+
+
 @pytest.mark.parametrize("delays", [(0.23, 0.11), (0.0, -0.02)])
 def test_header_has_delays_without_an_actuator_model(compiled: Compile, delays: tuple[float, float]) -> None:
     model = make_model(replace(named("full-linear-6", lat__w=0.1, ang__w=-0.4), delays=delays))

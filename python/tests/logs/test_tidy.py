@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from slipwise import _core
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs import Log, LogOptions, open_log
 
@@ -102,6 +103,16 @@ def test_steering_gives_omega_with_a_wheelbase(tmp_path: Path) -> None:
     commands = open_log(path, options=LogOptions(wheelbase=0.5)).runs[0].commands
     assert commands is not None
     assert commands.omega[0] == pytest.approx(2.0 * math.tan(0.1) / 0.5, rel=1e-14)
+    assert commands.wheelbase == 0.5
+
+
+def test_a_car_that_stands_with_turned_wheels_has_their_curvature_in_its_commands(tmp_path: Path) -> None:
+    rows = ["0,0,0.1,0,0,0", "0.1,0,0,0,0,0", "0.2,-1,0.1,0,0,0"]
+    path = table(tmp_path, *rows, header="t,cmd_v,cmd_steer,x,y,yaw")
+    commands = open_log(path, options=LogOptions(wheelbase=0.5)).runs[0].commands
+    assert commands is not None
+    assert commands.v.tolist() == [_core.STANDING_SPEED, 0.0, -1.0]
+    assert commands.omega[[0, 2]] / commands.v[[0, 2]] == pytest.approx(np.full(2, math.tan(0.1) / 0.5))
 
 
 def test_a_commanded_curvature_is_a_yaw_rate_at_the_commanded_speed(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,12 +15,13 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sample_logs import Drive, simulated_log
-from sample_models import Made, make_model
+from sample_models import LIMITS, Made, make_model
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import ModelError
 from slipwise.models import Model, ModelFile, load_model, parse_model
+from slipwise.models.difference import differences
 from slipwise.prediction import predict
 
 Content = dict[str, Any]
@@ -92,6 +94,24 @@ def test_model_without_an_actuator_model_makes_the_round_trip(tmp_path: Path) ->
     assert (actuator.delay_v, actuator.delay_omega, actuator.time_constant_v) == (0.2, -0.01, 0.0)
     with pytest.raises(ModelError, match="a lag or delay is longer than 1000 s"):
         make_model(Made(_core.named_basis("edd-2"), delays=(0.2, -2000.0)))
+
+
+def test_a_model_of_a_robot_that_steers_makes_the_round_trip_and_older_ones_do_not_steer(
+    tmp_path: Path,
+) -> None:
+    made = Made(_core.named_basis("edd-2"), commands=True)
+    turning, steering = make_model(made), make_model(replace(made, wheelbase=0.4))
+    again = load_model(steering.save(tmp_path / "model.yaml"))
+    assert again.content == steering.content
+    assert again.motion.wheelbase == 0.4
+    assert "steering" in {info.name: info.description for info in again.motion.parameters}["log_delay_omega"]
+    assert "wheelbase" not in turning.to_yaml()
+    assert turning.motion.wheelbase == 0.0
+    with pytest.raises(ModelError, match=r"act on the steering.*learn both with the wheelbase"):
+        differences(turning, steering)
+    limited = make_model(replace(made, limits=LIMITS)).content.model_dump(mode="json")
+    with pytest.raises(ModelError, match="limits are of yaw rates"):
+        parse_model(yaml.safe_dump(limited | {"wheelbase": 0.4}), where="a topic")
 
 
 def test_a_model_without_an_actuator_model_reaches_its_speed_at_once_after_the_delay() -> None:
