@@ -11,15 +11,17 @@ from sample_surfaces import FIRM, LOOSE, floor_log, model_of_floors
 from scripted_node import Scripted
 
 from slipwise.calibration import Settings
+from slipwise.calibration.calibrate_sequence import calibrate_sequence
 from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.live.build import Built, build_node
 from slipwise.live.outputs import SurfaceNow, surface_content
-from slipwise.live.replay import samples_of
+from slipwise.live.replay import Replay, samples_of
 from slipwise.live.said import Said
 from slipwise.live.samples import DriveStart, Sample, SurfaceCue
 from slipwise.live.surface_watch import SurfaceWatch
+from slipwise.logs import Log
 
 
 def settings_for(**live: object) -> Settings:
@@ -39,12 +41,34 @@ def run_remembering(script: list[Sample], **live: object) -> tuple[Built, Script
     return built, transport, [output for output in transport.outputs if isinstance(output, SurfaceNow)]
 
 
+def replayed(log: Log, **live: object) -> str:
+    transport = Replay(log, "wheel", rate=0.0, label=live.get("surface"))  # type: ignore[arg-type]
+    built = build_node(transport, "wheel", settings_for(**live))
+    built.node.run()
+    return built.learning.learner.judged_model(log=log)[0].to_yaml()
+
+
 @pytest.fixture(scope="module")
 def floors(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A model file that remembers a hall and sand."""
     path = tmp_path_factory.mktemp("floors") / "floors.yaml"
     model_of_floors(FIRM, LOOSE, labels=("hall", "sand")).save(path)
     return path
+
+
+def two_runs() -> Log:
+    """A log of two runs, whose labels come at the start and change under way."""
+    first, second = floor_log(FIRM, 5, terrain="hall").runs[0], floor_log(LOOSE, 6, terrain="sand").runs[0]
+    labels = second.extra["terrain"].copy()
+    labels[: len(labels) // 2] = "hall"
+    late = replace(second, extra={"t": second.extra["t"], "terrain": labels})
+    return Log(runs=(first, late))
+
+
+def test_a_log_that_is_replayed_gives_the_model_of_calibrate_with_a_memory() -> None:
+    log = two_runs()
+    wanted = calibrate_sequence([log], input="wheel")[0].model
+    assert replayed(log) == wanted.to_yaml()
 
 
 def test_the_surface_is_said_with_its_probability_and_what_is_remembered(floors: Path) -> None:
