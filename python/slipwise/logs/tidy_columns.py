@@ -262,7 +262,9 @@ def _turning_commands(
             v, table.numbers("cmd_steer", tally), wheelbase=options.wheelbase
         )
         note = f"{table.path.name}: cmd_omega from cmd_steer and wheelbase {options.wheelbase} m"
-        v = speed if omega is None else np.where(np.isnan(omega), speed, v)
+        if omega is not None:  # at a standstill it is 0, and the angle says how the wheels are turned
+            omega = np.where((v == 0.0) & (omega == 0.0) & np.isfinite(steered), steered, omega)
+        v = speed if omega is None else np.where(np.isnan(omega) | (omega == steered), speed, v)
         omega = _filled(omega, steered, note, notes)
     return v, omega
 

@@ -113,6 +113,13 @@ def test_a_car_that_stands_with_turned_wheels_has_their_curvature_in_its_command
     assert commands is not None
     assert commands.v.tolist() == [_core.STANDING_SPEED, 0.0, -1.0]
     assert commands.omega[[0, 2]] / commands.v[[0, 2]] == pytest.approx(np.full(2, math.tan(0.1) / 0.5))
+    path = table(
+        tmp_path, "0,0,0,0.1,0,0,0", "0.1,2,0.3,0.1,0,0,0", header="t,cmd_v,cmd_omega,cmd_steer,x,y,yaw"
+    )
+    both = open_log(path, options=LogOptions(wheelbase=0.5)).runs[0].commands
+    assert both is not None
+    assert both.v.tolist() == [_core.STANDING_SPEED, 2.0]
+    assert both.omega.tolist() == [commands.omega[0], 0.3]
 
 
 def test_a_commanded_curvature_is_a_yaw_rate_at_the_commanded_speed(tmp_path: Path) -> None:
