@@ -90,6 +90,21 @@ TEST_CASE("rollouts on a grade are the processor's on a GPU too") {
   }
 }
 
+TEST_CASE("rollouts of a drive that steers are the processor's on a GPU too") {
+  if (skipped()) {
+    return;
+  }
+  Gpu gpu;
+  const tests::SampleCommands<double> commands(37, 100, kPeriod);
+  for (const tests::SampleChain& actuator : tests::steering_chains()) {
+    CAPTURE(std::string(actuator.name));
+    const MotionModel model(named_basis("drive-5"), actuator.learned);
+    const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod});
+    const auto expected = tests::roll(program, commands.batch(kStart, kPast));
+    CHECK(apart(tests::roll(program, commands.batch(kStart, kPast), {.gpu = &gpu}), expected) < 1e-9);
+  }
+}
+
 TEST_CASE("rollouts over surfaces ahead are the processor's on a GPU too") {
   if (skipped()) {
     return;
