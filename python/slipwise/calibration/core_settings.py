@@ -59,7 +59,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         stream.sources = core_sources(sources, settings.pose_sources, settings.prior.clock_offset_std)
     hypotheses.bases = [settings.body_force.added_to(basis) for basis in settings.bases()]
     hypotheses.dynamics = from_commands
-    hypotheses.wheelbase = wheelbase or 0.0
+    hypotheses.wheelbase = wheelbase or 0.0 if from_commands else 0.0
     hypotheses.clock_offset, hypotheses.sensor_extrinsics = (
         settings.learn_clock_offset,
         settings.sensor_extrinsics.learn,
