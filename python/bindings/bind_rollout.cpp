@@ -180,12 +180,14 @@ void bind_uncertain(nb::module_& m) {
   m.def(
       "rollout_covariance",
       [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts,
-         nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu> out, unsigned threads) {
+         nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu> out, const std::vector<double>& growth,
+         unsigned threads) {
         const nb::gil_scoped_release release;
-        rollout_covariance(model, batch_of<double>(commands, starts), {out.data(), out.size()}, {.threads = threads});
+        rollout_covariance(model, batch_of<double>(commands, starts), {out.data(), out.size()}, growth,
+                           {.threads = threads});
       },
-      "model"_a, "commands"_a, "starts"_a, "out"_a, "threads"_a,
-      "Fills out [6, K, N] with (xx, xy, yy, xt, yt, tt) of every pose.");
+      "model"_a, "commands"_a, "starts"_a, "out"_a, "growth"_a, "threads"_a,
+      "Fills out [6, K, N] with (xx, xy, yy, xt, yt, tt) of every pose, times the growth [K] of its period.");
   m.def(
       "sample_futures",
       [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts, std::uint64_t seed,

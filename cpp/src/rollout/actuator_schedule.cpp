@@ -15,41 +15,56 @@ namespace {
 constexpr double kMostPeriods = 1e6;  // that a command may take to act
 constexpr double kSamePart = 1e-9;    // of a period: delays that differ by less act together
 
-ChannelTiming time_channel(const AxisResponse& response, double delay, double period) {
-  double whole = std::floor(delay / period);
+template <typename T>
+ChannelTimingOf<T> time_channel(const AxisResponseOf<T>& response, const T& delay, double period) {
+  double whole = std::floor(value_of(delay) / period);
   if (!(std::abs(whole) <= kMostPeriods)) {
-    throw std::invalid_argument("a command that acts after " + std::to_string(delay) + " s is more than " +
+    throw std::invalid_argument("a command that acts after " + std::to_string(value_of(delay)) + " s is more than " +
                                 std::to_string(kMostPeriods) + " periods of " + std::to_string(period) +
                                 " s late; use longer periods");
   }
-  double rest = delay - whole * period;
-  if (rest > (1.0 - kSamePart) * period) {
+  T rest = delay - whole * period;
+  if (value_of(rest) > (1.0 - kSamePart) * period) {
     whole += 1.0;
-    rest = 0.0;
+    rest = T(0.0);
   }
-  return {static_cast<std::ptrdiff_t>(whole), rest < kSamePart * period ? 0.0 : rest, response};
+  return {static_cast<std::ptrdiff_t>(whole), value_of(rest) < kSamePart * period ? T(0.0) : rest, response};
 }
 
-LagFraction fraction_of(double time_constant, double duration) {
-  const LagDecay decay(time_constant, duration);
-  return {time_constant > 0.0 ? time_constant * decay.gone / duration : 0.0, decay.left};
+template <typename T>
+LagFractionOf<T> fraction_of(const T& time_constant, const T& duration) {
+  using std::expm1;
+  if (!(value_of(time_constant) > 0.0)) {
+    return {T(0.0), T(0.0)};
+  }
+  const T gone = -expm1(-duration / time_constant);
+  return {time_constant * gone / duration, 1.0 - gone};
 }
 
-ChannelFraction fraction_of(const AxisResponse& response, double duration) {
+template <typename T>
+ChannelFractionOf<T> fraction_of(const AxisResponseOf<T>& response, const T& duration) {
   return {fraction_of(response.time_constant, duration), fraction_of(response.slow_time_constant, duration)};
 }
 
-bool lags(const ChannelTiming& channel) { return channel.response.longest_lag() > 0.0; }
-bool responds(const ChannelTiming& channel) { return channel.response.has_slow_mode() || channel.response.gain != 1.0; }
+template <typename T>
+bool lags(const ChannelTimingOf<T>& channel) {
+  return channel.response.longest_lag() > 0.0;
+}
+template <typename T>
+bool responds(const ChannelTimingOf<T>& channel) {
+  return channel.response.has_slow_mode() || value_of(channel.response.gain) != 1.0;
+}
 
 /// A stretch of constant delayed commands, cut so that no part with lag is longer than the actuator's own steps are.
-std::vector<PeriodPart> cut(const ActuatorSchedule& actuator, double duration, bool next_v, bool next_omega) {
-  if (!(duration > 0.0)) {
+template <typename T>
+std::vector<PeriodPartOf<T>> cut(const ActuatorScheduleOf<T>& actuator, const T& duration, bool next_v,
+                                 bool next_omega) {
+  if (!(value_of(duration) > 0.0)) {
     return {};
   }
-  const int count = actuator.lags ? lag_parts(duration, ActuatorSpan{}.longest_step) : 1;
-  const double part = duration / count;
-  std::vector<PeriodPart> parts(
+  const int count = actuator.lags ? lag_parts(value_of(duration), ActuatorSpan{}.longest_step) : 1;
+  const T part = duration / static_cast<double>(count);
+  std::vector<PeriodPartOf<T>> parts(
       static_cast<std::size_t>(count),
       {part, false, false, fraction_of(actuator.v.response, part), fraction_of(actuator.omega.response, part)});
   parts.front().next_v = next_v;
@@ -59,32 +74,66 @@ std::vector<PeriodPart> cut(const ActuatorSchedule& actuator, double duration, b
 
 }  // namespace
 
-ActuatorSchedule schedule_actuator(const ActuatorModel& actuator, double period) {
+ActuatorNumbers<ActuatorDual> differentiable_numbers(const MotionModel& model,
+                                                     const Eigen::Ref<const Eigen::VectorXd>& parameters) {
+  const ActuatorModel actuator = model.actuator(parameters);
+  const Eigen::VectorXd rates = model.actuator_scales(actuator);
+  const std::vector<Eigen::Index>& places = model.actuator_places();
+  const auto number = [&](double value, Eigen::Index place) {
+    const auto found = std::ranges::find(places, place) - places.begin();
+    return found == std::ssize(places) ? ActuatorDual(value)
+                                       : ActuatorDual::variable(value, static_cast<int>(found), rates[found]);
+  };
+  const ActuatorDual clock_offset = number(actuator.clock_offset, 4);
+  return {.v = {number(actuator.gain_v, 5), number(actuator.time_constant_v, 0), number(actuator.slow_fraction_v, 7),
+                number(actuator.slow_time_constant_v, 9)},
+          .omega = {number(actuator.gain_omega, 6), number(actuator.time_constant_omega, 1),
+                    number(actuator.slow_fraction_omega, 8), number(actuator.slow_time_constant_omega, 10)},
+          .delay_v = number(actuator.delay_v, 2) + clock_offset,
+          .delay_omega = number(actuator.delay_omega, 3) + clock_offset,
+          .wheelbase = actuator.wheelbase};
+}
+
+template <typename T>
+ActuatorScheduleOf<T> schedule_actuator(const ActuatorNumbers<T>& actuator, double period) {
   if (!(period > 0.0) || !std::isfinite(period)) {
     throw std::invalid_argument("the time between two commands must be a positive number of seconds, got " +
                                 std::to_string(period));
   }
-  const ChannelTiming v = time_channel(speed_response(actuator), actuator.delay_v + actuator.clock_offset, period);
-  const ChannelTiming omega =
-      time_channel(yaw_rate_response(actuator), actuator.delay_omega + actuator.clock_offset, period);
-  const double first = std::min(v.rest, omega.rest);
-  const double second = std::max(v.rest, omega.rest);
-  const bool together = first == second;
-  ActuatorSchedule schedule{period, v, omega, lags(v) || lags(omega), responds(v) || responds(omega), {},
-                            {},     0, {},    actuator.wheelbase};
+  const ChannelTimingOf<T> v = time_channel(actuator.v, actuator.delay_v, period);
+  const ChannelTimingOf<T> omega = time_channel(actuator.omega, actuator.delay_omega, period);
+  const bool v_first = value_of(v.rest) < value_of(omega.rest);
+  const T first = v_first ? v.rest : omega.rest;
+  const T second = v_first ? omega.rest : v.rest;
+  const bool together = value_of(first) == value_of(second);
+  const bool v_last = together || !v_first, omega_last = together || v_first;
+  ActuatorScheduleOf<T> schedule{period, v, omega, lags(v) || lags(omega), responds(v) || responds(omega), {},
+                                 {},     0, {},    actuator.wheelbase};
   schedule.lead_in = cut(schedule, first, false, false);
   if (!together) {
-    schedule.cycle = cut(schedule, second - first, v.rest == first, omega.rest == first);
+    schedule.cycle = cut(schedule, T(second - first), v_first, !v_first);
   }
   schedule.branch = schedule.cycle.size();
-  const std::vector<PeriodPart> last = cut(schedule, first + period - second, v.rest == second, omega.rest == second);
+  const auto last = cut(schedule, T(first + period - second), v_last, omega_last);
   schedule.cycle.insert(schedule.cycle.end(), last.begin(), last.end());
-  if (first > 0.0) {
-    schedule.tail = cut(schedule, period - second, v.rest == second, omega.rest == second);
+  if (value_of(first) > 0.0) {
+    schedule.tail = cut(schedule, T(period - second), v_last, omega_last);
   } else {
     schedule.branch = schedule.cycle.size();
   }
   return schedule;
+}
+
+template ActuatorScheduleOf<double> schedule_actuator(const ActuatorNumbers<double>&, double);
+template ActuatorScheduleOf<ActuatorDual> schedule_actuator(const ActuatorNumbers<ActuatorDual>&, double);
+
+ActuatorSchedule schedule_actuator(const ActuatorModel& actuator, double period) {
+  return schedule_actuator(ActuatorNumbers<double>{.v = speed_response(actuator),
+                                                   .omega = yaw_rate_response(actuator),
+                                                   .delay_v = actuator.delay_v + actuator.clock_offset,
+                                                   .delay_omega = actuator.delay_omega + actuator.clock_offset,
+                                                   .wheelbase = actuator.wheelbase},
+                           period);
 }
 
 }  // namespace slipwise

@@ -6,8 +6,11 @@
 #include <type_traits>
 
 // All that holds more than templates comes before the processor is named.
+#include <cmath>
+
+#include "slipwise/linear/plain_value.hpp"
 #include "slipwise/rollout/drive_command.hpp"
-#include "slipwise/rollout/lane_job.hpp"
+#include "slipwise/rollout/lane_tangent_job.hpp"
 #include "slipwise/rollout/slip_factor.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -19,8 +22,10 @@
 #endif
 #define SLIPWISE_HAS_LEVEL
 #include "slipwise/rollout/lane_car.hpp"
+#include "slipwise/rollout/lane_futures.hpp"
 #include "slipwise/rollout/lane_kernel.hpp"
 #include "slipwise/rollout/lane_limiter.hpp"
+#include "slipwise/rollout/lane_tangents.hpp"
 #endif
 
 namespace slipwise {
@@ -40,6 +45,13 @@ LaneKernelOfLevel<Scalar> kernel() {
           Lanes<Level, Scalar>::kLanes};
 }
 
+UncertainKernels uncertain() {
+  constexpr std::size_t kLanes = Lanes<Unpaired<Level>, double>::kLanes;
+  const auto limit = limit_block<Unpaired<Level>, double>;
+  return {.tangents = {roll_tangents<Level, double>, limit, nullptr, kLanes},
+          .futures = {roll_futures<Level, double>, limit, nullptr, kLanes}};
+}
+
 }  // namespace
 #if defined(__clang__)
 #pragma clang attribute pop
@@ -49,9 +61,11 @@ LaneKernelOfLevel<Scalar> kernel() {
 
 LaneKernelOfLevel<float> avx2_kernel(float /*scalar*/) { return kernel<float>(); }
 LaneKernelOfLevel<double> avx2_kernel(double /*scalar*/) { return kernel<double>(); }
+UncertainKernels avx2_uncertain() { return uncertain(); }
 #else
 LaneKernelOfLevel<float> avx2_kernel(float /*scalar*/) { return {nullptr, nullptr, nullptr, 0}; }
 LaneKernelOfLevel<double> avx2_kernel(double /*scalar*/) { return {nullptr, nullptr, nullptr, 0}; }
+UncertainKernels avx2_uncertain() { return {}; }
 #endif
 
 }  // namespace slipwise

@@ -6,8 +6,10 @@
 #include <type_traits>
 
 #include "slipwise/rollout/lane_car.hpp"
+#include "slipwise/rollout/lane_futures.hpp"
 #include "slipwise/rollout/lane_kernel.hpp"
 #include "slipwise/rollout/lane_limiter.hpp"
+#include "slipwise/rollout/lane_tangents.hpp"
 
 namespace slipwise {
 namespace {
@@ -26,6 +28,13 @@ LaneKernelOfLevel<float> portable_kernel(float /*scalar*/) {
 LaneKernelOfLevel<double> portable_kernel(double /*scalar*/) {
   return {roll_block<Level, double>, limit_block<Level, double>, drive_cars<Level, double>,
           Lanes<Level, double>::kLanes};
+}
+
+UncertainKernels portable_uncertain() {
+  constexpr std::size_t kLanes = Lanes<Unpaired<Level>, double>::kLanes;
+  const auto limit = limit_block<Unpaired<Level>, double>;
+  return {.tangents = {roll_tangents<Level, double>, limit, nullptr, kLanes},
+          .futures = {roll_futures<Level, double>, limit, nullptr, kLanes}};
 }
 
 }  // namespace slipwise

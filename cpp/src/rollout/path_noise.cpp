@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slip noise of one period, and the paths that it acts on.
+// What is not known of a model, checked and as kernels take it.
 #include "slipwise/rollout/path_noise.hpp"
 
 #include <cmath>
@@ -36,52 +36,25 @@ DisturbedTerms disturbed_terms_of(const UncertainModel& model) {
                                                     : disturbed_terms(model.model, uncertainty.prior_std);
 }
 
-RolloutProgram drive_alone(const UncertainModel& model) {
-  Eigen::VectorXd parameters = model.parameters;
-  parameters.head(model.model.slip_size()).setZero();
-  RolloutSetting setting = model.setting;
-  setting.ahead = {};
-  return {model.model, parameters, setting};
-}
-
 RolloutProgram moved(const UncertainModel& model, Eigen::VectorXd parameters, const Eigen::MatrixXd& ahead) {
   RolloutSetting setting = model.setting;
   move_slip(ahead, parameters, setting.ahead);
   return {model.model, parameters, setting};
 }
 
-RolloutPaths roll_paths(const RolloutProgram& program, const RolloutBatch<double>& batch,
-                        const RolloutOptions& options) {
-  const std::size_t poses = batch.rollouts * batch.periods;
-  RolloutPaths paths{batch.rollouts, batch.periods, std::vector<double>(poses), std::vector<double>(poses),
-                     std::vector<double>(poses)};
-  RolloutOutputs<double> outputs;
-  outputs.x = paths.x.data();
-  outputs.y = paths.y.data();
-  outputs.theta = paths.theta.data();
-  rollout_batch(program, batch, outputs, options);
-  return paths;
-}
-
-Eigen::Vector3d period_tangent(const Pose2& before, const Pose2& after) {
-  const Pose2 moved = between(before, after);
-  const auto arc = arc_functions(moved.theta);
-  const double scale = 1.0 / (arc.a * arc.a + arc.b * arc.b);
-  return {scale * (arc.a * moved.x + arc.b * moved.y), scale * (arc.a * moved.y - arc.b * moved.x), moved.theta};
-}
-
-PeriodNoise period_noise(const Eigen::Vector3d& drive, double period, const MotionNoise& noise) {
-  const double distance = std::hypot(drive.x(), drive.y());
-  const double turn = std::abs(drive.z());
-  const double wheels = distance + kTurnRadius * turn;
-  const std::array<double, 3> motion{wheels, wheels, turn + distance / kStraightRadius};
-  const double moving_time = wheels > 0.0 ? period : 0.0;
-  PeriodNoise result{};
-  for (std::size_t c = 0; c < motion.size(); ++c) {
-    result.variance[c] = noise.psd_time[c] * moving_time + noise.psd_motion[c] * motion[c];
-    result.constant[c] = noise.fraction[c] * motion[c];
+LaneNoise<double> lane_noise(const MotionNoise& noise, const Eigen::Vector3d& widened) {
+  LaneNoise<double> lanes{.psd_time = {},
+                          .psd_motion = {},
+                          .fraction = {},
+                          .turn_radius = kTurnRadius,
+                          .per_straight_radius = 1.0 / kStraightRadius};
+  for (std::size_t c = 0; c < noise.fraction.size(); ++c) {
+    const double variance = widened[static_cast<Eigen::Index>(c)];
+    lanes.psd_time[c] = variance * noise.psd_time[c];
+    lanes.psd_motion[c] = variance * noise.psd_motion[c];
+    lanes.fraction[c] = std::sqrt(variance) * noise.fraction[c];
   }
-  return result;
+  return lanes;
 }
 
 }  // namespace slipwise

@@ -46,18 +46,11 @@ SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::Vect
   return compile_slip(model.basis(), {alpha.data(), model.basis().size()}, constant_gravity(setting), setting.sideways);
 }
 
-/// The drive itself does not change.
 std::vector<SlipProgram> changes_of(const MotionModel& model, const RolloutSetting& setting) {
   check_ahead(setting.ahead, model.slip_size());
   std::vector<SlipProgram> changes;
   for (const Eigen::VectorXd& change : setting.ahead.changes) {
-    changes.push_back(compile_slip(model.basis(), {change.data(), model.basis().size()}, constant_gravity(setting),
-                                   setting.sideways));
-    changes.back().products[kProductV].fraction[0] -= 1.0;
-    changes.back().products[kProductOmega].fraction[2] -= 1.0;
-    if (setting.sideways) {
-      changes.back().products[kProductSideV].fraction[1] -= 1.0;
-    }
+    changes.push_back(slip_change(model, change, setting));
   }
   return changes;
 }
@@ -78,22 +71,16 @@ std::vector<LaneProduct> lane_products(const SlipProgram& program, const std::ve
   return products;
 }
 
-/// With the coefficients and gains of the two lags. The rest of a lag is rounded first, so that it settles on its
-/// input.
+/// In the numbers of a kernel. What is left of a gap is rounded first, so that a lag settles on its input.
 template <typename Scalar>
-LaneLag<Scalar> lane_lag(const ChannelFraction& part, const AxisResponse& response) {
+LaneLag<Scalar> rounded_lag(const ChannelFractionOf<double>& part, const AxisResponse& response) {
   const auto number = [](double value) { return static_cast<Scalar>(value); };
-  const auto rounded = [](double value) { return static_cast<double>(static_cast<Scalar>(value)); };
-  const double fast = response.fast_fraction();
-  const double slow = response.gain - fast;
-  return {
-      .mean_by_input = number(fast * (1.0 - rounded(part.fast.mean_gap)) + slow * (1.0 - rounded(part.slow.mean_gap))),
-      .mean_by_fast = number(part.fast.mean_gap),
-      .mean_by_slow = number(part.slow.mean_gap),
-      .fast_by_input = number(fast * (1.0 - rounded(part.fast.end_gap))),
-      .fast_by_fast = number(part.fast.end_gap),
-      .slow_by_input = number(slow * (1.0 - rounded(part.slow.end_gap))),
-      .slow_by_slow = number(part.slow.end_gap)};
+  const auto rounded = [&](const LagFractionOf<double>& lag) {
+    return LagFractionOf<double>{static_cast<double>(number(lag.mean_gap)), static_cast<double>(number(lag.end_gap))};
+  };
+  const LaneLag<double> lag = lane_lag<double>({rounded(part.fast), rounded(part.slow)}, response);
+  return {number(lag.mean_by_input), number(lag.mean_by_fast),  number(lag.mean_by_slow), number(lag.fast_by_input),
+          number(lag.fast_by_fast),  number(lag.slow_by_input), number(lag.slow_by_slow)};
 }
 
 /// Pieces of equal length, so that neither they nor what is sent before the start depends on any command.
@@ -141,8 +128,8 @@ LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const std::vector<
   for (const PeriodPart& part : parts) {
     constants.parts.push_back({.first_coefficient = constants.coefficients.size(),
                                .duration = static_cast<Scalar>(part.duration),
-                               .v = lane_lag<Scalar>(part.v, actuator.v.response),
-                               .omega = lane_lag<Scalar>(part.omega, actuator.omega.response),
+                               .v = rounded_lag<Scalar>(part.v, actuator.v.response),
+                               .omega = rounded_lag<Scalar>(part.omega, actuator.omega.response),
                                .next_v = part.next_v,
                                .next_omega = part.next_omega});
     const auto add = [&](const SlipProgram& program) {
@@ -159,6 +146,19 @@ LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const std::vector<
 }
 
 }  // namespace
+
+SlipProgram slip_change(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& change,
+                        const RolloutSetting& setting) {
+  const Eigen::VectorXd alpha = change;
+  SlipProgram program =
+      compile_slip(model.basis(), {alpha.data(), model.basis().size()}, constant_gravity(setting), setting.sideways);
+  program.products[kProductV].fraction[0] -= 1.0;
+  program.products[kProductOmega].fraction[2] -= 1.0;
+  if (setting.sideways) {
+    program.products[kProductSideV].fraction[1] -= 1.0;
+  }
+  return program;
+}
 
 RolloutProgram::RolloutProgram(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                const RolloutSetting& setting)

@@ -2,7 +2,8 @@
 // Drawing parameters, the slip disturbance and slip noise.
 #include "slipwise/rollout/sampled_futures.hpp"
 
-#include <array>
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -10,21 +11,40 @@
 #include <vector>
 
 #include "slipwise/linear/symmetric_eigen.hpp"
+#include "slipwise/rollout/block_of_batch.hpp"
+#include "slipwise/rollout/check_batch.hpp"
+#include "slipwise/rollout/kernel_of_level.hpp"
+#include "slipwise/rollout/lane_noise_job.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
 
 namespace slipwise {
 namespace {
 
-/// A generator for one sample of one rollout: neighbours' numbers do not depend on each other.
-std::mt19937_64 generator(std::uint64_t seed, std::uint64_t sample, std::uint64_t rollout) {
-  std::uint64_t mixed = seed;
-  for (const std::uint64_t part : {sample, rollout}) {  // SplitMix64 (Steele, Lea and Flood 2014)
-    mixed += 0x9E3779B97F4A7C15U * (part + 1U);
+/// Numbers for one sample of one rollout (Steele, Lea and Flood 2014): neighbours' do not depend on each other.
+class SplitMix {
+ public:
+  SplitMix(std::uint64_t seed, std::uint64_t sample, std::uint64_t rollout) : state_(seed) {
+    for (const std::uint64_t part : {sample, rollout}) {
+      state_ += kGolden * part;
+      state_ = next();
+    }
+  }
+
+  std::uint64_t next() {
+    state_ += kGolden;
+    std::uint64_t mixed = state_;
     mixed = (mixed ^ (mixed >> 30U)) * 0xBF58476D1CE4E5B9U;
     mixed = (mixed ^ (mixed >> 27U)) * 0x94D049BB133111EBU;
-    mixed ^= mixed >> 31U;
+    return mixed ^ (mixed >> 31U);
   }
-  return std::mt19937_64(mixed);
+
+ private:
+  static constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;
+  std::uint64_t state_;
+};
+
+std::mt19937_64 generator(std::uint64_t seed, std::uint64_t sample, std::uint64_t rollout) {
+  return std::mt19937_64(SplitMix(seed, sample, rollout).next());
 }
 
 constexpr std::uint64_t kParameters = ~std::uint64_t{0};  // stands for the rollout where parameters are drawn
@@ -45,82 +65,59 @@ Eigen::MatrixXd draw_ahead(const UncertainModel& model, std::size_t sample, std:
   return drawn;
 }
 
-/// What the drive does over a period, and the standard deviations of the noise that comes with it.
-struct DrivenPeriod {
-  Eigen::Vector3d drive;
-  std::array<double, 3> white;
-  std::array<double, 3> constant;
-};
-
-/// The periods of all rollouts, [periods * rollouts]: the same in every sample.
-std::vector<DrivenPeriod> driven_periods(const UncertainModel& model, const RolloutBatch<double>& batch,
-                                         const RolloutOptions& options) {
-  const RolloutPaths drive = roll_paths(drive_alone(model), batch, options);
-  std::vector<DrivenPeriod> periods(batch.periods * batch.rollouts);
-  for (std::size_t n = 0; n < batch.rollouts; ++n) {
-    Pose2 before = batch.starts[batch.starts.size() > 1 ? n : 0].pose;
-    for (std::size_t k = 0; k < batch.periods; ++k) {
-      DrivenPeriod& period = periods[k * batch.rollouts + n];
-      period.drive = period_tangent(before, drive.at(k, n));
-      const PeriodNoise noise = period_noise(period.drive, model.setting.period, model.uncertainty.noise);
-      for (std::size_t c = 0; c < noise.variance.size(); ++c) {
-        const double widened =
-            std::sqrt(model.uncertainty.inflation * model.uncertainty.scale[static_cast<Eigen::Index>(c)]);
-        period.white[c] = widened * std::sqrt(noise.variance[c]);
-        period.constant[c] = widened * noise.constant[c];
-      }
-      before = drive.at(k, n);
-    }
-  }
-  return periods;
-}
-
-/// Drives along a path again, with noise added to the tangent of every period.
-class NoisyPath {
+/// The numbers of futures that all samples share.
+class FutureNumbers {
  public:
-  NoisyPath(const UncertainModel& model, const DisturbedTerms& terms, std::mt19937_64 random)
-      : model_(model), terms_(terms), random_(random) {
-    for (double& part : constant_) {
-      part = normal_(random_);
+  FutureNumbers(const UncertainModel& model, double period)
+      : terms_(disturbed_terms_of(model)), law_(model.uncertainty.disturbance) {
+    const ModelUncertainty& uncertainty = model.uncertainty;
+    numbers_.noise = lane_noise(uncertainty.noise, uncertainty.inflation * uncertainty.scale);
+    numbers_.disturbed = static_cast<std::size_t>(terms_.size());
+    for (std::size_t i = 0; i < numbers_.disturbed; ++i) {
+      numbers_.channel[i] = static_cast<std::size_t>(terms_.channels[i]);
+      numbers_.of_turn[i] = terms_.of_turn[i];
     }
-    const DisturbanceModel& law = model.uncertainty.disturbance;
-    if (terms.size() > 0) {
-      std::discrete_distribution<std::size_t> which(law.weights.begin(), law.weights.end());
-      const SlipDisturbance& disturbance = law.candidates[which(random_)];
-      kept_ = std::exp(-model.setting.period / disturbance.time_constant);
-      nominal_ = terms.variances(disturbance).cwiseSqrt();
-      deviation_ = nominal_.unaryExpr([&](double std) { return std * normal_(random_); });
+    for (const SlipDisturbance& candidate : law_.candidates) {
+      deviations_.push_back((uncertainty.inflation * terms_.variances(candidate)).cwiseSqrt());
+      kept_.push_back(std::exp(-period / candidate.time_constant));
     }
   }
 
-  Pose2 next(const Pose2& pose, Eigen::Vector3d tangent, const DrivenPeriod& period) {
-    for (std::size_t c = 0; c < constant_.size(); ++c) {
-      tangent[static_cast<Eigen::Index>(c)] += period.white[c] * normal_(random_) + period.constant[c] * constant_[c];
+  /// Those of some rollouts of one sample, of which each has random numbers of its own.
+  LaneFutures<double>& of(std::uint64_t seed, std::uint64_t sample, std::size_t first, std::size_t count) {
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      SplitMix random(seed, sample, first + lane);
+      for (auto& row : numbers_.seeds) {
+        row[lane] = static_cast<std::uint32_t>(random.next() >> 32U);
+      }
+      if (numbers_.disturbed > 0) {
+        const std::size_t which = drawn_candidate(static_cast<double>(random.next() >> 11U) * 0x1p-53);
+        numbers_.kept[lane] = kept_[which];
+        for (std::size_t i = 0; i < numbers_.disturbed; ++i) {
+          numbers_.deviation[i][lane] = deviations_[which][static_cast<Eigen::Index>(i)];
+        }
+      }
     }
-    disturbance(tangent, period.drive);
-    return compose(pose, exp(tangent));
+    return numbers_;
   }
 
  private:
-  /// Adds the slip disturbance, which holds still over a period (derivations/uncertainty.md).
-  void disturbance(Eigen::Vector3d& tangent, const Eigen::Vector3d& drive) {
-    for (Eigen::Index i = 0; i < terms_.size(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const double motion = terms_.of_turn[k] ? drive.z() : drive.x();
-      tangent[static_cast<Eigen::Index>(terms_.channels[k])] +=
-          std::sqrt(model_.uncertainty.inflation) * deviation_[i] * motion;
-      deviation_[i] = kept_ * deviation_[i] + std::sqrt(1.0 - kept_ * kept_) * nominal_[i] * normal_(random_);
+  std::size_t drawn_candidate(double uniform) const {
+    std::size_t which = 0;
+    for (; which + 1 < kept_.size(); ++which) {
+      uniform -= law_.weights[static_cast<Eigen::Index>(which)];
+      if (uniform < 0.0) {
+        break;
+      }
     }
+    return which;
   }
 
-  const UncertainModel& model_;
-  const DisturbedTerms& terms_;
-  std::mt19937_64 random_;
-  std::normal_distribution<double> normal_;
-  std::array<double, 3> constant_{};
-  double kept_ = 0.0;          ///< of the deviation over a period
-  Eigen::VectorXd nominal_;    ///< standard deviations of the disturbed terms
-  Eigen::VectorXd deviation_;  ///< of these terms now
+  DisturbedTerms terms_;
+  const DisturbanceModel& law_;
+  std::vector<Eigen::VectorXd> deviations_;  ///< of each candidate
+  std::vector<double> kept_;
+  LaneFutures<double> numbers_{};
 };
 
 }  // namespace
@@ -150,29 +147,33 @@ void sample_futures(const UncertainModel& model, const RolloutBatch<double>& bat
     throw std::invalid_argument("the poses of every sample need room for " + std::to_string(poses) +
                                 " numbers in x, y and theta each, got " + std::to_string(outputs.x.size()));
   }
-  const std::vector<DrivenPeriod> driven = driven_periods(model, batch, options);
-  const DisturbedTerms terms = disturbed_terms_of(model);
+  check_batch(batch);
   const Eigen::MatrixXd parameters = draw_parameters(model, samples, seed);
+  const LaneKernelOfLevel<double> kernel = uncertain_kernels_of(options.level).futures;
+  std::atomic<unsigned> faults = kNoFault;
   share_out(samples, options.threads, [&](std::size_t first, std::size_t last) {
+    FutureNumbers numbers(model, model.setting.period);
     for (std::size_t s = first; s < last; ++s) {
       const RolloutProgram program =
           moved(model, parameters.col(static_cast<Eigen::Index>(s)), draw_ahead(model, s, seed));
-      const RolloutPaths paths = roll_paths(program, batch, {1, options.level});
-      for (std::size_t n = 0; n < batch.rollouts; ++n) {
-        NoisyPath noisy(model, terms, generator(seed, s, n));
-        const Pose2 start = batch.starts[batch.starts.size() > 1 ? n : 0].pose;
-        Pose2 before = start, pose = start;
-        for (std::size_t k = 0; k < batch.periods; ++k) {
-          pose = noisy.next(pose, period_tangent(before, paths.at(k, n)), driven[k * batch.rollouts + n]);
-          before = paths.at(k, n);
-          const std::size_t at = s * poses + k * batch.rollouts + n;
-          outputs.x[at] = pose.x;
-          outputs.y[at] = pose.y;
-          outputs.theta[at] = pose.theta;
-        }
+      check_axes(program, batch);
+      RolloutOutputs<double> paths;
+      paths.x = &outputs.x[s * poses];
+      paths.y = &outputs.y[s * poses];
+      paths.theta = &outputs.theta[s * poses];
+      LaneJob<double> job = job_of(program, batch, paths);
+      job.futures = &numbers.of(seed, s, 0, 0);
+      BlockOfBatch<double> place(program, batch, nullptr, kernel, job);
+      for (std::size_t n = 0; n < batch.rollouts; n += kernel.lanes) {
+        numbers.of(seed, s, n, std::min(kernel.lanes, batch.rollouts - n));
+        faults |= place.roll(n / kernel.lanes);
       }
     }
   });
+  check_commands(batch, 0);
+  if (faults != kNoFault) {
+    refuse(faults);
+  }
 }
 
 }  // namespace slipwise

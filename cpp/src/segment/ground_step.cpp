@@ -96,18 +96,20 @@ GroundStep values_of(const StepParts<Scalar>& parts) {
   return step;
 }
 
+Eigen::RowVector3d derivative_of(const Dual3& number) { return {number.by[0], number.by[1], number.by[2]}; }
+
 GroundStepLinearization linearized(const StepParts<Dual3>& parts) {
   GroundStepLinearization result{.step = values_of(parts),
                                  .level_by = {},
-                                 .turned_by = parts.turned.by,
+                                 .turned_by = derivative_of(parts.turned),
                                  .gravity_by = Eigen::Matrix<double, 2, 3>::Zero(),
                                  .at_by_pose = Eigen::Matrix3d::Zero(),
                                  .at_by_time = Eigen::Vector3d::Zero(),
                                  .at_by_step = Eigen::Matrix<double, 3, 4>::Zero()};
-  result.gravity_by << parts.gravity[0].by, parts.gravity[1].by;
+  result.gravity_by << derivative_of(parts.gravity[0]), derivative_of(parts.gravity[1]);
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      result.level_by[i].row(static_cast<Eigen::Index>(j)) = parts.level[i][j].by;
+      result.level_by[i].row(static_cast<Eigen::Index>(j)) = derivative_of(parts.level[i][j]);
     }
   }
   return result;

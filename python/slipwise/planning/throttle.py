@@ -75,8 +75,8 @@ def reach_of(commands: Numbers, start: Start) -> _core.InputHistory:
 
 def curve_covariance(
     model: Model, commands: Numbers, dt: float, start: Start, paths: Callable[[Numbers, Start], Numbers]
-) -> NDArray[np.float64]:
-    """Return the covariance [6, K, N] of every pose, of what a car never showed of its curves.
+) -> NDArray[np.float64] | None:
+    """Return the covariance [6, K, N] of every pose from what a car never showed of its curves, if it is one.
 
     Args:
         model: a learned model.
@@ -85,10 +85,10 @@ def curve_covariance(
         start: as `behind_curves` takes it.
         paths: rolls out the twists that curves make, to [3, K, N].
     """
+    if model.car is None:
+        return None
     rollouts, periods = commands.shape[:2]
     total = np.zeros((6, periods, rollouts))
-    if model.car is None:
-        return total
     cars, step = model.car.deviations(reach_of(commands, start))
     numbers = commands.astype(np.float64)
     expected = paths(*behind_curves(model, numbers, dt, start))

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/linear/plain_value.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 
 namespace slipwise {
@@ -75,6 +76,11 @@ inline LagStepLinearization linearize_lag_step(double output, double input, doub
 /// The output alone, without the way.
 inline double lag_output(double output, double input, double time_constant, double duration) {
   return time_constant > 0.0 ? input + (output - input) * std::exp(-duration / time_constant) : input;
+}
+/// The same of numbers with derivatives.
+template <typename T>
+T lag_output(const T& output, const T& input, const T& time_constant, const T& duration) {
+  return value_of(time_constant) > 0.0 ? output + (output - input) * expm1(-duration / time_constant) : input;
 }
 
 inline LagStep lag_step(double output, double input, double time_constant, double duration) {

@@ -11,12 +11,17 @@
 namespace slipwise {
 
 /// \throws std::invalid_argument where the processor lacks the level.
-template <typename Scalar>
-LaneKernelOfLevel<Scalar> kernel_of(InstructionLevel level) {
+inline void check_level(InstructionLevel level) {
   if (!has_instruction_level(level)) {
     throw std::invalid_argument("this processor has no " + std::string(name_of(level)) + "; use " +
                                 std::string(name_of(best_instruction_level())));
   }
+}
+
+/// \throws std::invalid_argument where the processor lacks the level.
+template <typename Scalar>
+LaneKernelOfLevel<Scalar> kernel_of(InstructionLevel level) {
+  check_level(level);
   LaneKernelOfLevel<Scalar> kernel{};
   if (level == InstructionLevel::Avx512) {
     kernel = avx512_kernel(Scalar{});
@@ -24,6 +29,19 @@ LaneKernelOfLevel<Scalar> kernel_of(InstructionLevel level) {
     kernel = avx2_kernel(Scalar{});
   }
   return kernel.roll != nullptr ? kernel : portable_kernel(Scalar{});
+}
+
+/// Those of tangents and of futures.
+/// \throws std::invalid_argument where the processor lacks the level.
+inline UncertainKernels uncertain_kernels_of(InstructionLevel level) {
+  check_level(level);
+  UncertainKernels kernels{};
+  if (level == InstructionLevel::Avx512) {
+    kernels = avx512_uncertain();
+  } else if (level == InstructionLevel::Avx2) {
+    kernels = avx2_uncertain();
+  }
+  return kernels.tangents.roll != nullptr ? kernels : portable_uncertain();
 }
 
 }  // namespace slipwise

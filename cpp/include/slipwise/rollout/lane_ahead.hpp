@@ -3,24 +3,20 @@
 // (derivations/surfaces.md).
 #pragma once
 
-#include "slipwise/rollout/lane_slip.hpp"
 #include "slipwise/rollout/lanes.hpp"
 #include "slipwise/slip/path_edges.hpp"
 
 namespace slipwise {
 
-/// Adds the part of a tangent that a step of `length`, from `travelled` on, gets for what lies beyond an edge [m].
+/// Which fraction of a step of `length`, from `travelled` on, lies beyond an edge [m].
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void add_beyond(Scalar edge, const typename L::Vector& travelled, const typename L::Vector& length,
-                               const TangentLanes<L>& change, TangentLanes<L>& tangent) {
+SLIPWISE_LANES void find_beyond(Scalar edge, const typename L::Vector& travelled, const typename L::Vector& length,
+                                typename L::Vector& fraction) {
   const auto one = static_cast<Scalar>(1);
   const typename L::Vector step = length + static_cast<Scalar>(kEdgeWidth);
   const typename L::Vector beyond = (travelled + step - edge) / step;
   // between 0 and 1, without a branch
-  const typename L::Vector fraction = (magnitude(beyond) - magnitude(beyond - one) + one) * static_cast<Scalar>(0.5);
-  tangent.forward = tangent.forward + fraction * change.forward;
-  tangent.left = tangent.left + fraction * change.left;
-  tangent.turn = tangent.turn + fraction * change.turn;
+  copy((magnitude(beyond) - magnitude(beyond - one) + one) * static_cast<Scalar>(0.5), fraction);
 }
 
 }  // namespace slipwise

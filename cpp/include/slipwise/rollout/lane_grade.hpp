@@ -4,12 +4,17 @@
 #pragma once
 
 #include "slipwise/rollout/lane_job.hpp"
-#include "slipwise/rollout/lane_path.hpp"
+#include "slipwise/rollout/lane_slip.hpp"
 #include "slipwise/rollout/lanes.hpp"
 
 // Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
 // NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
+
+template <class L>
+struct HeadingLanes {
+  L::Vector cosine, sine;
+};
 
 /// One over the root of 1 + u, u from 0 to 3, by Newton's method.
 template <class Vector, typename Scalar>
@@ -26,10 +31,10 @@ SLIPWISE_LANES void inverse_root(const Vector& u, const Scalar* numbers, Vector&
   }
 }
 
-/// The tilt at the heading that the drive has amid the step; `half` is half of its turn.
+/// The tilt at the heading that the drive has amid the step, before which it is `heading`; `half` is half of its turn.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void find_grade(const LaneJob<Scalar>& job, const PathLanes<L>& path, const typename L::Vector& half,
-                               GradeLanes<L>& grade) {
+SLIPWISE_LANES void find_grade(const LaneJob<Scalar>& job, const HeadingLanes<L>& heading,
+                               const typename L::Vector& half, GradeLanes<L>& grade) {
   using Vector = L::Vector;
   const Scalar numbers[] = {static_cast<Scalar>(1), static_cast<Scalar>(1.5), static_cast<Scalar>(0.5),
                             static_cast<Scalar>(0.25), static_cast<Scalar>(0.75)};
@@ -38,8 +43,8 @@ SLIPWISE_LANES void find_grade(const LaneJob<Scalar>& job, const PathLanes<L>& p
   const Vector squared = half * half;
   const Vector sine_half = half * (squared * minus_third + numbers[0]);
   const Vector cosine_half = squared * (squared * static_cast<Scalar>(1.0 / 24.0) + minus_half) + numbers[0];
-  const Vector c = path.cosine * cosine_half - path.sine * sine_half;
-  const Vector s = path.sine * cosine_half + path.cosine * sine_half;
+  const Vector c = heading.cosine * cosine_half - heading.sine * sine_half;
+  const Vector s = heading.sine * cosine_half + heading.cosine * sine_half;
   const Vector ahead = c * job.rise_x + s * job.rise_y;
   const Vector left = c * job.rise_y - s * job.rise_x;
   inverse_root(ahead * ahead, numbers, grade.cos_pitch);

@@ -76,6 +76,11 @@ struct LaneMap {
 };
 
 template <typename Scalar>
+struct LaneTangents;
+template <typename Scalar>
+struct LaneFutures;
+
+template <typename Scalar>
 struct LaneJob {
   const LanePart<Scalar>* parts;  ///< those of the lead-in, the cycle and the tail (chain_schedule.hpp)
   const Scalar* coefficients;     ///< [parts][products * 3], times the part's duration: from products to a tangent
@@ -115,6 +120,9 @@ struct LaneJob {
   Scalar* cost_sum;
   Scalar* cost_highest;
   Scalar* cost_lowest;
+
+  const LaneTangents<Scalar>* tangents;  ///< of a kernel of tangents (lane_tangent_job.hpp)
+  const LaneFutures<Scalar>* futures;    ///< of a kernel of futures (lane_noise_job.hpp)
 };
 
 /// One channel of the drives at the start (actuator_start.hpp), a number per lane.
@@ -214,6 +222,14 @@ LaneKernelOfLevel<float> avx2_kernel(float);
 LaneKernelOfLevel<double> avx2_kernel(double);
 LaneKernelOfLevel<float> avx512_kernel(float);
 LaneKernelOfLevel<double> avx512_kernel(double);
+
+/// Kernels whose blocks are rolled out with tangents, or with drawn noise; they drive no cars.
+struct UncertainKernels {
+  LaneKernelOfLevel<double> tangents, futures;
+};
+UncertainKernels portable_uncertain();
+UncertainKernels avx2_uncertain();
+UncertainKernels avx512_uncertain();
 
 }  // namespace slipwise
 // NOLINTEND(modernize-avoid-c-arrays)

@@ -52,46 +52,85 @@ SLIPWISE_LANES unsigned find_faults(const PathLanes<L>& path, const LaneBlock<Sc
   return faults;
 }
 
-/// The tangent of one part: the drive moves on, and slips.
+/// What slip over a part comes from, with all that is rarer.
+template <class L>
+struct AnyPart {
+  ProductLanes<L> products;
+  GradeLanes<L> grade;           ///< on a grade
+  L::Vector beyond[kMostEdges];  ///< of each edge, the fraction of the part that lies there
+  TangentLanes<L> driven;        ///< along the ground
+};
+
+/// What a part begins with. The duration is one number, or lanes.
+template <class L, class Duration>
+struct PartStart {
+  HeadingLanes<L> heading;
+  MeanLanes<L> mean;
+  const L::Scalar* coefficients;
+  Duration duration;
+};
+
+/// The tangent of a part with all that is rarer.
+template <class L, class Duration, typename Scalar = L::Scalar>
+SLIPWISE_LANES void any_tangent(const LaneJob<Scalar>& job, const PartStart<L, Duration>& from,
+                                typename L::Vector& travelled, AnyPart<L>& part, TangentLanes<L>& tangent) {
+  const MeanLanes<L>& mean = from.mean;
+  if (job.on_grade) {
+    find_grade<L>(job, from.heading, mean.omega * (from.duration * static_cast<Scalar>(0.5)), part.grade);
+  }
+  TangentLanes<L>& driven = part.driven;
+  slip_tangent<L>(job, {from.coefficients, job.on_grade ? &part.grade : nullptr, job.vy != nullptr}, mean,
+                  part.products, driven);
+  const typename L::Vector length = magnitude(mean.v) * from.duration;
+  for (std::size_t i = 0; i < job.edge_count; ++i) {
+    TangentLanes<L> change;
+    products_tangent<L>(job, from.coefficients + 3 * (i + 1) * job.product_count, part.products, change);
+    find_beyond<L>(job.edges[i], travelled, length, part.beyond[i]);
+    driven.forward = driven.forward + part.beyond[i] * change.forward;
+    driven.left = driven.left + part.beyond[i] * change.left;
+    driven.turn = driven.turn + part.beyond[i] * change.turn;
+  }
+  travelled = travelled + magnitude(driven.forward);
+  copy(driven.forward, tangent.forward);
+  copy(driven.left, tangent.left);
+  copy(driven.turn, tangent.turn);
+  if (job.on_grade) {
+    see_from_above<L>(part.grade, tangent);
+  }
+}
+
+/// The drive moves on over a part.
 template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>
-SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part,
-                               RobotLanes<L, kActuator, kSlip>& robot, TangentLanes<L>& tangent) {
-  typename L::Vector mean_v;
-  typename L::Vector mean_omega;
-  advance<L, kActuator, true>(part.v, robot.v, mean_v);
-  advance<L, kActuator, false>(part.omega, robot.omega, mean_omega);
+SLIPWISE_LANES void move_drive(const LaneJob<Scalar>& job, const LanePart<Scalar>& part,
+                               RobotLanes<L, kActuator, kSlip>& robot, MeanLanes<L>& mean) {
+  advance<L, kActuator, true>(part.v, robot.v, mean.v);
+  advance<L, kActuator, false>(part.omega, robot.omega, mean.omega);
   if constexpr (kSlip == Slip::Any) {
     if (job.sharpest > 0) {
-      mean_omega = mean_v * mean_omega;
+      mean.omega = mean.v * mean.omega;
+    }
+    if (job.vy != nullptr) {
+      advance<L, kActuator, true>(part.v, robot.vy, mean.vy);
+    } else {
+      fill(static_cast<Scalar>(0), mean.vy);
     }
   }
+}
+
+/// The tangent of one part, of which this is the drive's mean.
+template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>
+SLIPWISE_LANES void slip_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part, const MeanLanes<L>& mean,
+                              RobotLanes<L, kActuator, kSlip>& robot, TangentLanes<L>& tangent) {
   const Scalar* coefficients = job.coefficients + part.first_coefficient;
   if constexpr (kSlip == Slip::Quadratic) {
-    quadratic_tangent<L>(job, coefficients, mean_v, mean_omega, tangent);
+    quadratic_tangent<L>(job, coefficients, mean.v, mean.omega, tangent);
   } else if constexpr (kSlip == Slip::Products) {
-    slip_tangent<L>(job, {coefficients, nullptr, nullptr}, mean_v, mean_omega, tangent);
+    ProductLanes<L> products;
+    slip_tangent<L>(job, {coefficients, nullptr, false}, mean, products, tangent);
   } else {
-    typename L::Vector mean_vy;
-    if (job.vy != nullptr) {
-      advance<L, kActuator, true>(part.v, robot.vy, mean_vy);
-    }
-    GradeLanes<L> grade;
-    if (job.on_grade) {
-      find_grade<L>(job, robot.path, mean_omega * (part.duration * static_cast<Scalar>(0.5)), grade);
-    }
-    PartSlip<L> slip{coefficients, job.on_grade ? &grade : nullptr, job.vy != nullptr ? &mean_vy : nullptr};
-    slip_tangent<L>(job, slip, mean_v, mean_omega, tangent);
-    const typename L::Vector length = magnitude(mean_v) * part.duration;
-    for (std::size_t i = 0; i < job.edge_count; ++i) {
-      TangentLanes<L> change;
-      slip.coefficients = coefficients + 3 * (i + 1) * job.product_count;
-      slip_tangent<L>(job, slip, mean_v, mean_omega, change);
-      add_beyond<L>(job.edges[i], robot.travelled, length, change, tangent);
-    }
-    robot.travelled = robot.travelled + magnitude(tangent.forward);
-    if (job.on_grade) {
-      see_from_above<L>(grade, tangent);
-    }
+    AnyPart<L> any;
+    const PartStart<L, Scalar> from{{robot.path.cosine, robot.path.sine}, mean, coefficients, part.duration};
+    any_tangent<L>(job, from, robot.travelled, any, tangent);
   }
 }
 
@@ -121,6 +160,7 @@ SLIPWISE_LANES void start_robot(const LaneJob<Scalar>& job, const LaneBlock<Scal
       robot.omega.next = job.start_row - job.shift_omega - 1;
       tell_curvature(job, block, sources.v, sources.omega, robot.omega);
     }
+    robot.vy.next = 0;
     if (job.vy != nullptr) {
       start_channel(job, block, sources.vy, job.shift_v, robot.vy);
     }
@@ -153,35 +193,33 @@ SLIPWISE_LANES void tell_robot(const LaneJob<Scalar>& job, const LaneBlock<Scala
   }
 }
 
-/// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
-/// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
-/// it to the period's end, and it goes on from where it was put aside.
-template <class L, Actuator kActuator, Slip kSlip, bool kWide, typename Scalar = L::Scalar>
-SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+/// One loop over the parts of all periods, so that the robot stays in the processor's registers: at the branch the
+/// robot is put aside, the tail leads it to the period's end, and it goes on from where it was put aside. `ride` drives
+/// the robot over a part and writes what is wanted.
+template <class L, Actuator kActuator, Slip kSlip, class Ride, typename Scalar = L::Scalar>
+SLIPWISE_LANES void ride_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                               RobotLanes<L, kActuator, kSlip>& robot, Ride& ride) {
   const CommandSources<Scalar> sources = sources_of(job, block);
-  RobotLanes<L, kActuator, kSlip> robot;
   start_robot<L, kActuator, kSlip>(job, block, sources, robot);
-  OutputLanes<L> output(job, block);
+  ride.start(robot);
   RobotLanes<L, kActuator, kSlip> aside = robot;
   const bool has_tail = job.tail != job.part_end;
   std::size_t period = 0;
   for (std::size_t i = 0; period < job.periods;) {
-    const LanePart<Scalar>& part = job.parts[i];
-    tell_robot<L, kActuator, kSlip>(job, block, sources, part, robot);
-    TangentLanes<L> tangent;
-    drive_part<L, kActuator, kSlip>(job, part, robot, tangent);
-    step<L, kWide>(tangent, robot.path);
+    tell_robot<L, kActuator, kSlip>(job, block, sources, job.parts[i], robot);
+    ride.drive(i, robot);
     if constexpr (kActuator == Actuator::None) {
-      output.write_period(robot.path, period);
+      ride.write_period(robot.path, period);
       ++period;
       continue;
     }
     ++i;
     if (i == job.part_end) {
-      output.write_piece(robot.path, period);
+      ride.write_piece(robot.path, period);
       ++period;
       if (has_tail && period < job.periods) {
         robot = aside;
+        ride.take_up();
         i = job.branch;
         continue;
       }
@@ -190,16 +228,50 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
       i = job.cycle;
     }
     if (has_tail && i == job.branch) {
-      if (output.wants_piece(period) || period + 1 == job.periods) {
+      if (ride.wants_piece(period) || period + 1 == job.periods) {
         aside = robot;
+        ride.put_aside();
         i = job.tail;
       } else {
         ++period;
       }
     }
   }
-  output.write_end(robot.path);
-  return find_faults<L, kWide>(robot.path, block) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
+}
+
+/// The robot alone. `kWide` also takes steps that turn by more than kLaneTurn.
+template <class L, Actuator kActuator, Slip kSlip, bool kWide>
+class RobotRide : public OutputLanes<L> {
+ public:
+  using Scalar = L::Scalar;
+  using Robot = RobotLanes<L, kActuator, kSlip>;
+
+  SLIPWISE_LANES RobotRide(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block)
+      : OutputLanes<L>(job, block), job_(job) {}
+
+  SLIPWISE_LANES void start(const Robot& /*robot*/) const {}
+  SLIPWISE_LANES void drive(std::size_t part, Robot& robot) const {
+    MeanLanes<L> mean;
+    move_drive<L, kActuator, kSlip>(job_, job_.parts[part], robot, mean);
+    TangentLanes<L> tangent;
+    slip_part<L, kActuator, kSlip>(job_, job_.parts[part], mean, robot, tangent);
+    step<L, kWide>(tangent, robot.path);
+  }
+  SLIPWISE_LANES void put_aside() const {}
+  SLIPWISE_LANES void take_up() const {}
+
+ private:
+  const LaneJob<Scalar>& job_;
+};
+
+/// Rolls the block out.
+template <class L, Actuator kActuator, Slip kSlip, bool kWide, typename Scalar = L::Scalar>
+SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+  RobotLanes<L, kActuator, kSlip> robot;
+  RobotRide<L, kActuator, kSlip, kWide> ride(job, block);
+  ride_block<L, kActuator, kSlip>(job, block, robot, ride);
+  ride.write_end(robot.path);
+  return find_faults<L, kWide>(robot.path, block) | (ride.all_finite(robot.path) ? kNoFault : kNotFinite);
 }
 
 template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>

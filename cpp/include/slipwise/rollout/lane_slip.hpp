@@ -23,6 +23,12 @@ struct FactorLanes {
   L::Vector value[kSlipFactors];
 };
 
+/// The products of a slip program.
+template <class L>
+struct ProductLanes {
+  L::Vector value[kMostProducts];
+};
+
 /// How a robot stands on a plane amid a step.
 template <class L>
 struct GradeLanes {
@@ -30,37 +36,45 @@ struct GradeLanes {
   L::Vector cos_pitch, across, cos_roll, upward;  ///< of the rows of A: (cos p, sin p sin r), cos r, cos r / cos p
 };
 
-/// What a part is driven and slips on, beside speed and yaw rate.
+/// The drive's mean over a part.
+template <class L>
+struct MeanLanes {
+  L::Vector v, omega;
+  L::Vector vy;  ///< where the robot drives sideways
+};
+
+/// What a part slips on.
 template <class L>
 struct PartSlip {
   const L::Scalar* coefficients;
   const GradeLanes<L>* grade;  ///< null on level ground
-  const L::Vector* vy;         ///< the mean speed to the left; null where the robot does not drive sideways
+  bool sideways;               ///< the robot drives sideways too
 };
 
 /// Those of the sideways speed, as Term has them.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void find_sideways_factors(const LaneJob<Scalar>& job, const typename L::Vector& v,
-                                          const typename L::Vector& vy, FactorLanes<L>& factors) {
+SLIPWISE_LANES void find_sideways_factors(const LaneJob<Scalar>& job, const MeanLanes<L>& mean,
+                                          FactorLanes<L>& factors) {
   using Vector = L::Vector;
   const auto at = [&factors](SlipFactor factor) -> Vector& { return factors.value[static_cast<std::size_t>(factor)]; };
-  copy(vy, at(SlipFactor::SideV));
+  copy(mean.vy, at(SlipFactor::SideV));
   if ((job.factors & bit(SlipFactor::AbsSideV)) != 0) {
-    copy(magnitude(vy), at(SlipFactor::AbsSideV));
+    copy(magnitude(mean.vy), at(SlipFactor::AbsSideV));
   }
   if ((job.factors & bit(SlipFactor::ThirdHarmonic)) != 0) {
-    const Vector ahead = v * v;
-    const Vector aside = vy * vy;
-    copy(vy * (ahead * static_cast<Scalar>(3) - aside) / (ahead + aside + job.squared_curvature_speed),
+    const Vector ahead = mean.v * mean.v;
+    const Vector aside = mean.vy * mean.vy;
+    copy(mean.vy * (ahead * static_cast<Scalar>(3) - aside) / (ahead + aside + job.squared_curvature_speed),
          at(SlipFactor::ThirdHarmonic));
   }
 }
 
 /// Without a grade no product has gravity for a factor.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const PartSlip<L>& slip, const typename L::Vector& v,
-                                 const typename L::Vector& omega, FactorLanes<L>& factors) {
+SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const PartSlip<L>& slip, const MeanLanes<L>& mean,
+                                 FactorLanes<L>& factors) {
   using Vector = L::Vector;
+  const Vector &v = mean.v, &omega = mean.omega;
   const unsigned used = job.factors;
   Vector one;
   fill(static_cast<Scalar>(1), one);
@@ -81,8 +95,8 @@ SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const PartSlip<L>& 
   }
   if ((used & bit(SlipFactor::Moving)) != 0 || slip.grade != nullptr) {
     Vector along = magnitude(v);
-    if (slip.vy != nullptr) {
-      along = along + magnitude(*slip.vy);
+    if (slip.sideways) {
+      along = along + magnitude(mean.vy);
     }
     const Vector moving = any_nonzero(along, omega, one);
     copy(moving, at(SlipFactor::Moving));
@@ -91,8 +105,8 @@ SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const PartSlip<L>& 
       copy(moving * slip.grade->gy, at(SlipFactor::GravityY));
     }
   }
-  if (slip.vy != nullptr) {
-    find_sideways_factors<L>(job, v, *slip.vy, factors);
+  if (slip.sideways) {
+    find_sideways_factors<L>(job, mean, factors);
   }
 }
 
@@ -153,23 +167,35 @@ SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* 
 
 /// Runs the program: each product is an earlier one times a factor, and has its coefficients in the tangent.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const PartSlip<L>& slip, const typename L::Vector& v,
-                                 const typename L::Vector& omega, TangentLanes<L>& tangent) {
+SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const PartSlip<L>& slip, const MeanLanes<L>& mean,
+                                 ProductLanes<L>& products, TangentLanes<L>& tangent) {
   FactorLanes<L> factors;
-  find_factors<L>(job, slip, v, omega, factors);
+  find_factors<L>(job, slip, mean, factors);
+  const typename L::Vector &v = mean.v, &omega = mean.omega;
   const Scalar* coefficients = slip.coefficients;
-  typename L::Vector products[kMostProducts];
-  copy(v, products[kProductV]);
-  copy(omega, products[kProductOmega]);
-  fill(static_cast<Scalar>(1), products[kProductOne]);
+  copy(v, products.value[kProductV]);
+  copy(omega, products.value[kProductOmega]);
+  fill(static_cast<Scalar>(1), products.value[kProductOne]);
   tangent.forward = v * coefficients[3 * kProductV] + omega * coefficients[3 * kProductOmega];
   tangent.left = v * coefficients[3 * kProductV + 1] + omega * coefficients[3 * kProductOmega + 1];
   tangent.turn = v * coefficients[3 * kProductV + 2] + omega * coefficients[3 * kProductOmega + 2];
   for (std::size_t i = kFirstProduct; i < job.product_count; ++i) {
     const LaneProduct code = job.products[i];
-    const typename L::Vector product = products[code.parent] * factors.value[code.factor];
-    copy(product, products[i]);
+    const typename L::Vector product = products.value[code.parent] * factors.value[code.factor];
+    copy(product, products.value[i]);
     add_product<L>(code.channels, product, coefficients + 3 * i, tangent);
+  }
+}
+
+/// The tangent of products that were found before, with other coefficients.
+template <class L, typename Scalar = L::Scalar>
+SLIPWISE_LANES void products_tangent(const LaneJob<Scalar>& job, const Scalar* coefficients,
+                                     const ProductLanes<L>& products, TangentLanes<L>& tangent) {
+  fill(static_cast<Scalar>(0), tangent.forward);
+  copy(tangent.forward, tangent.left);
+  copy(tangent.forward, tangent.turn);
+  for (std::size_t i = 0; i < job.product_count; ++i) {
+    add_product<L>(job.products[i].channels, products.value[i], coefficients + 3 * i, tangent);
   }
 }
 

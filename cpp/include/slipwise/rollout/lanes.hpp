@@ -39,6 +39,13 @@ struct Lanes {
   static constexpr std::size_t kLanes = sizeof(Vector) / sizeof(Scalar);
 };
 
+/// A level with single vectors, for what pairs of them have no registers for.
+template <class Level>
+struct Unpaired {
+  static constexpr std::size_t kBytes = Level::kBytes;
+  static constexpr std::size_t kPairs = 0;
+};
+
 template <class Vector, typename Scalar>
 SLIPWISE_LANES void load(const Scalar* from, Vector& vector) {
   if constexpr (std::is_same_v<Vector, Scalar>) {
@@ -152,6 +159,24 @@ SLIPWISE_LANES Vector sign(const Vector& a, const Vector& one) {
 template <class Half>
 SLIPWISE_LANES Pair<Half> sign(const Pair<Half>& a, const Pair<Half>& one) {
   return {sign(a.low, one.low), sign(a.high, one.high)};
+}
+
+/// The root of each number.
+template <typename Scalar, class Vector>
+SLIPWISE_LANES Vector root_of(const Vector& squared) {
+  constexpr std::size_t kLanes = sizeof(Vector) / sizeof(Scalar);
+  alignas(64) Scalar numbers[kLanes];  // NOLINT(modernize-avoid-c-arrays)
+  store(squared, numbers);
+  for (Scalar& number : numbers) {
+    if constexpr (std::is_same_v<Scalar, float>) {
+      number = __builtin_sqrtf(number);
+    } else {
+      number = __builtin_sqrt(number);
+    }
+  }
+  Vector root;
+  load(numbers, root);
+  return root;
 }
 
 /// 1, and 0 where both are zero.

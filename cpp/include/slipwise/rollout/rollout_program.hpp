@@ -37,6 +37,24 @@ struct LaneConstants {
   DriveRamps<Scalar> limits;
 };
 
+/// What the two lags of a channel do over a part, with their gains. `T` is a number, or one with derivatives.
+template <typename T>
+LaneLag<T> lane_lag(const ChannelFractionOf<T>& part, const AxisResponseOf<T>& response) {
+  const T fast = response.fast_fraction();
+  const T slow = response.gain - fast;
+  return {.mean_by_input = fast * (1.0 - part.fast.mean_gap) + slow * (1.0 - part.slow.mean_gap),
+          .mean_by_fast = part.fast.mean_gap,
+          .mean_by_slow = part.slow.mean_gap,
+          .fast_by_input = fast * (1.0 - part.fast.end_gap),
+          .fast_by_fast = part.fast.end_gap,
+          .slow_by_input = slow * (1.0 - part.slow.end_gap),
+          .slow_by_slow = part.slow.end_gap};
+}
+
+/// What a change of the slip parameters adds to a program: the same products; the drive itself does not change.
+SlipProgram slip_change(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& change,
+                        const RolloutSetting& setting);
+
 class RolloutProgram {
  public:
   /// \throws std::invalid_argument when the parameters or the slip ahead do not fit the model, the period is not
