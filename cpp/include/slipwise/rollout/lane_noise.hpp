@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 
 #include "slipwise/lie/lane_arc.hpp"
 #include "slipwise/rollout/lane_noise_job.hpp"
@@ -49,7 +50,7 @@ SLIPWISE_LANES void logarithm(const Vector& x, Vector& result) {
   const Vector t = (fraction - 1.0F) / (fraction + 1.0F);
   const Vector q = t * t;
   const Vector series = ((q * (1.0F / 9) + 1.0F / 7) * q + 1.0F / 5) * q + 1.0F / 3;
-  result = __builtin_convertvector(exponent, Vector) * 0.69314718F + (t + t) * (q * series + 1.0F);
+  result = __builtin_convertvector(exponent, Vector) * std::numbers::ln2_v<float> + (t + t) * (q * series + 1.0F);
 }
 
 /// Normal numbers, independent in every lane: xoshiro128++ (Blackman and Vigna 2021), and two of them into two normal
@@ -73,7 +74,7 @@ class NormalLanes {
     const Integers first = bits(), second = bits();
     // from 2^-24 to 1, and half a turn to each side
     const Floats uniform = __builtin_convertvector((first >> 8) & 0xFFFFFF, Floats) * 0x1p-24F + 0x1p-24F;
-    const Floats angle = __builtin_convertvector(second, Floats) * (3.14159265F * 0x1p-31F);
+    const Floats angle = __builtin_convertvector(second, Floats) * (std::numbers::pi_v<float> * 0x1p-31F);
     Floats log;
     logarithm<Floats, Integers>(uniform, log);
     const Floats radius = root_of<float>(log * -2.0F);
