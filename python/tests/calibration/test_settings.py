@@ -13,7 +13,7 @@ from sample_logs import Drive, simulated_log
 
 from slipwise import _core
 from slipwise.calibration import Settings, calibrate, load_settings, make_settings
-from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.core_settings import core_settings, wheelbase_of
 from slipwise.calibration.gone_keys import GONE
 from slipwise.calibration.keys import keys_of
 from slipwise.calibration.settings import users_dump
@@ -202,6 +202,15 @@ def test_users_have_few_keys_and_hear_what_holds_in_place_of_older_ones(tmp_path
     assert (settings.filter.huber, settings.wheel_separation, settings.live.host) == (3.0, 1.08, "::1")
     assert users_dump(settings)["filter"] == {"huber": 3.0}  # a folder of a run gives the same again
     assert key_paths(users_dump(Settings())) <= keys
+
+
+def test_lags_act_on_the_steering_where_it_is_commanded_alone() -> None:
+    learned = [
+        core_settings(Settings(), name, (1.0,), wheelbase=0.5).hypotheses for name in ("command", "wheel")
+    ]
+    assert [each.wheelbase for each in learned] == [0.5, 0.0]
+    assert wheelbase_of(make_settings({"log": {"vehicle": "f1tenth"}})) is not None
+    assert wheelbase_of(make_settings({"log": {"vehicle": "dart"}})) is None  # of throttle and steering
 
 
 def test_every_key_set_still_calibrates() -> None:
