@@ -3,14 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Core>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 #include <functional>
 #include <random>
 
 #include "sample_bases.hpp"
 #include "sample_drives.hpp"
+#include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
@@ -35,8 +35,8 @@ Eigen::Matrix3d sample_covariance(int draws, const std::function<Eigen::Vector3d
 
 /// Eigenvalues of sampled against reported covariance: all one where they agree.
 double worst_ratio(const Eigen::Matrix3d& sampled, const Eigen::Matrix3d& stated) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(sampled, stated);
-  return (solver.eigenvalues().array() - 1.0).abs().maxCoeff();
+  const Eigen::Matrix3d root = stated.llt().matrixL(), white = root.inverse();
+  return (symmetric_eigen(white * sampled * white.transpose()).values.array() - 1.0).abs().maxCoeff();
 }
 
 /// Three standard deviations of a sampled variance, for the worst of three eigenvalues a little more.

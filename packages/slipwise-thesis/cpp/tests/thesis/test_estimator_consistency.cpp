@@ -2,13 +2,13 @@
 // Which estimator is as sure as it should be? NEES of all that have a covariance, same truth and noise.
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "simulated_drive.hpp"
+#include "slipwise/linear/cholesky.hpp"
 #include "slipwise/thesis/estimator.hpp"
 
 namespace slipwise {
@@ -53,7 +53,7 @@ double nees(const std::string& name, const MotionNoise& noise, std::size_t strid
     }
     const Estimate estimate = estimator.estimate();
     const Eigen::VectorXd error = estimate.mean - truth;
-    sum += error.dot(estimate.covariance.llt().solve(error)) / 10.0 / kRuns;
+    sum += error.dot(Cholesky(estimate.covariance).solve(error)) / 10.0 / kRuns;
   }
   MESSAGE(name << ": NEES/m = " << sum);
   return sum;

@@ -2,7 +2,6 @@
 // Least squares over slip terms: solution, named not_identifiable directions, and the two spread surfaces.
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "slipwise/linear/cholesky.hpp"
 #include "slipwise/thesis/least_squares_surface.hpp"
 
 namespace slipwise {
@@ -47,7 +47,8 @@ TEST_CASE("full rank gives the weighted normal equations") {
   const Eigen::VectorXd weight = std.cwiseAbs2().cwiseInverse();
   const Eigen::MatrixXd normal_matrix = rows.transpose() * weight.asDiagonal() * rows;
   CHECK(fit.rank() == 5);
-  CHECK(fit.coefficients.isApprox(normal_matrix.inverse() * rows.transpose() * weight.cwiseProduct(output), 1e-8));
+  CHECK(fit.coefficients.isApprox(
+      Cholesky(normal_matrix).solve(Eigen::VectorXd(rows.transpose() * weight.cwiseProduct(output))), 1e-8));
   CHECK(fit.leverage.sum() == doctest::Approx(5.0));
   CHECK(undetermined_directions(fit, kTerms).empty());
 }
