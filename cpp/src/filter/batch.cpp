@@ -91,6 +91,7 @@ BatchSearch::BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDat
       prior_(std::move(prior)),
       data_(std::move(data)),
       huber_(settings.huber),
+      carry_(settings.carry),
       search_(settings.start.size() > 0 ? settings.start : prior_.mean,
               {.iterations = settings.iterations, .relative = settings.tolerance}) {
   check_data();
@@ -136,10 +137,18 @@ void BatchSearch::judge(BatchPoint point) {
   search_.propose(present(best_).equations);
 }
 
+SegmentLinearization BatchSearch::linearised(std::size_t datum) const {
+  if (carry_ && best_) {
+    if (auto straight = carried(best_->at[datum], model_, search_.candidate() - search_.best(), data_[datum].noise)) {
+      return std::move(*straight);
+    }
+  }
+  return linearize_segment(model_, search_.candidate(), data_[datum].inputs, data_[datum].segment);
+}
+
 bool BatchSearch::advance(std::size_t segments) {
   for (std::size_t i = 0; i < segments && !search_.over(); ++i) {
-    const BatchDatum& datum = data_[at_.size()];
-    at_.push_back(linearize_segment(model_, search_.candidate(), datum.inputs, datum.segment));
+    at_.push_back(linearised(at_.size()));
     if (at_.size() == data_.size()) {
       judge(point(std::exchange(at_, {})));
     }

@@ -80,7 +80,7 @@ void FilterRefit::begin_search() {
   constexpr double kWeighted = std::numeric_limits<double>::infinity();
   const double expected_cost = 3.0 * static_cast<double>(data_.size());
   const BatchSettings settings{
-      .tolerance = kTolerance / expected_cost, .huber = kWeighted, .start = state_.estimate.mean};
+      .tolerance = kTolerance / expected_cost, .huber = kWeighted, .carry = true, .start = state_.estimate.mean};
   search_.emplace(model_, before_, data_, settings, std::exchange(at_, {}));
   phase_ = Phase::Search;
 }

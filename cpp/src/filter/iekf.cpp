@@ -32,7 +32,10 @@ struct MeasuredSegment {
   const Segment& segment;
   const Eigen::Matrix3d& covariance;
 
-  At at(const Eigen::VectorXd& parameters) const { return linearize_segment(model, parameters, inputs, segment); }
+  At near(const Eigen::VectorXd& parameters, const Eigen::VectorXd& step, const At& before) const {
+    auto straight = carried(before, model, step, covariance);
+    return straight ? std::move(*straight) : linearize_segment(model, parameters, inputs, segment);
+  }
   Innovation innovation(const At& at) const { return segment.measured.vector() - at.predicted.vector(); }
   static const Jacobian& jacobian(const At& at) { return at.by_parameter; }
   const Eigen::Matrix3d& noise(const At& /*at*/) const { return covariance; }

@@ -166,6 +166,31 @@ TEST_CASE("linearised segments predict what integration predicts") {
   }
 }
 
+TEST_CASE("a linearisation is carried over small steps to a quarter of the noise, and not over large ones") {
+  const Basis basis = named_basis("drive-9");
+  const double std = 0.01;
+  const Eigen::Matrix3d noise = std * std * Eigen::Matrix3d::Identity();
+  for (const Case& actuator : sample_chains()) {
+    CAPTURE(actuator.name);
+    const MotionModel model(basis, actuator.learned);
+    const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 23), actuator.actuator);
+    const Eigen::VectorXd pattern = Eigen::VectorXd::LinSpaced(model.size(), -1.0, 1.0);
+    for (const tests::SampleDrive& drive : tests::sample_drives()) {
+      CAPTURE(drive.name);
+      const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
+      const auto at = linearize_segment(model, parameters, inputs, kSegment);
+      for (const double size : {0.001, 0.01, 0.03, 0.1}) {
+        if (const auto near = carried(at, model, size * pattern, noise)) {
+          const auto there = integrate_segment(model, parameters + size * pattern, inputs, kSegment).sensor_motion();
+          CHECK((near->predicted.vector() - there.vector()).norm() < 0.25 * std);
+        }
+      }
+      CHECK(carried(at, model, 0.001 * pattern, noise));
+      CHECK(!carried(at, model, 10.0 * pattern, noise));
+    }
+  }
+}
+
 TEST_CASE("the derivative is exact for a sensor whose place is known") {
   const Basis basis = named_basis("odd-even-10");
   Segment observed = kSegment;

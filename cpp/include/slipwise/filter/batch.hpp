@@ -22,6 +22,8 @@ struct BatchSettings {
   int iterations = 30;      ///< at most
   double tolerance = 1e-8;  ///< relative decrease of the cost that counts as converged [-]
   double huber = 2.5;       ///< a residual of more than this many sigma counts for less [-]
+  /// A segment that is as good as straight along a step is not linearised again.
+  bool carry = false;
   /// Where the search starts [parameters]; empty: at the prior's mean.
   Eigen::VectorXd start = {};
 };
@@ -79,7 +81,8 @@ class BatchSearch {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.prior_, self.data_, self.prior_information_, self.search_, self.at_, self.huber_, self.best_);
+    a(self.model_, self.prior_, self.data_, self.prior_information_, self.search_, self.at_, self.huber_, self.carry_,
+      self.best_);
     if constexpr (!std::is_const_v<Self>) {
       self.check_data();
     }
@@ -90,12 +93,15 @@ class BatchSearch {
   /// datum, or a noise is none.
   void check_data();
   BatchPoint point(std::vector<SegmentLinearization> at) const;
+  /// The datum at the candidate.
+  SegmentLinearization linearised(std::size_t datum) const;
   void judge(BatchPoint point);
 
   MotionModel model_;
   Estimate prior_;
   std::vector<BatchDatum> data_;
   double huber_ = 0.0;
+  bool carry_ = false;
   std::vector<NewError> errors_;
   Eigen::MatrixXd prior_information_;
   GaussNewton search_;

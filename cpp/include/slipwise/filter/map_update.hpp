@@ -18,9 +18,10 @@ struct MapSettings {
   int halvings;      ///< of a step, before it is given up
 };
 
-/// A Measurement linearises itself with `at(state)`; of that, `innovation` is measured minus predicted, `jacobian` the
-/// prediction's by the state, and `noise` the covariance of what adds to it. The state is kept as prior + P dual, so
-/// that the prior's cost needs no inverse of P, which may be singular.
+/// A Measurement linearises itself with `at(state)`, and may with `near(state, step, before)`, a step away from where
+/// it was linearised `before`; of that, `innovation` is measured minus predicted, `jacobian` the prediction's by the
+/// state, and `noise` the covariance of what adds to it. The state is kept as prior + P dual, so that the prior's cost
+/// needs no inverse of P, which may be singular.
 template <class Measurement>
 class MapUpdate {
  public:
@@ -67,10 +68,18 @@ class MapUpdate {
     return {std::move(dual), std::move(state), std::move(at), r, cost};
   }
 
-  Point evaluate(Eigen::VectorXd dual) const {
+  Point evaluate(Eigen::VectorXd dual, const Point& before) const {
     Eigen::VectorXd state = prior_.mean + prior_.covariance * dual;
-    At at = measurement_.at(state);
+    At at = linearised(state, before);
     return evaluated(std::move(dual), std::move(state), std::move(at));
+  }
+
+  At linearised(const Eigen::VectorXd& state, const Point& before) const {
+    if constexpr (requires { measurement_.near(state, state, before.at); }) {
+      return measurement_.near(state, state - before.state, before.at);
+    } else {
+      return measurement_.at(state);
+    }
   }
 
   /// x_{i+1} = x- + K_i [z - h(x_i) - H_i (x- - x_i)], as a dual vector.
@@ -91,7 +100,7 @@ class MapUpdate {
   /// Goes a step, or half of it and so on while the MAP cost grows. False when nothing helps.
   bool descend(Point& i, const Eigen::VectorXd& full, int halvings) const {
     for (double fraction = 1.0; halvings >= 0; --halvings, fraction /= 2.0) {
-      Point next = evaluate(i.dual + fraction * full);
+      Point next = evaluate(i.dual + fraction * full, i);
       if (std::isfinite(next.cost) && next.cost <= i.cost * (1.0 + 1e-12) + kNegligibleCost) {
         i = std::move(next);
         return true;
