@@ -47,6 +47,8 @@ std::mt19937_64 generator(std::uint64_t seed, std::uint64_t sample, std::uint64_
   return std::mt19937_64(SplitMix(seed, sample, rollout).next());
 }
 
+static_assert(static_cast<std::size_t>(kMostDisturbed) == kMostDisturbedLanes);
+
 constexpr std::uint64_t kParameters = ~std::uint64_t{0};  // stands for the rollout where parameters are drawn
 constexpr std::uint64_t kSurfaces = kParameters - 1;      // and where the slip of surfaces ahead is
 
@@ -78,7 +80,7 @@ class FutureNumbers {
       numbers_.of_turn[i] = terms_.of_turn[i];
     }
     for (const SlipDisturbance& candidate : law_.candidates) {
-      deviations_.push_back((uncertainty.inflation * terms_.variances(candidate)).cwiseSqrt());
+      deviations_.emplace_back((uncertainty.inflation * terms_.variances(candidate)).cwiseSqrt());
       kept_.push_back(std::exp(-period / candidate.time_constant));
     }
   }
