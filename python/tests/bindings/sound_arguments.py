@@ -305,6 +305,7 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "iekf_update noise": lambda: 0.01 * np.eye(3),
     "make_estimator name": lambda: "iekf",
     "rollout_batch costs": lambda: None,
+    "rollout_covariance growth": lambda: [1.0, 1.1, 1.2, 1.3],
     "rollout_covariance out": lambda: np.zeros((6, 4, 2)),
     "rts_smooth noise": lambda: [0.01 * np.eye(3)],
     "sample_futures out": lambda: np.zeros((3, 5, 4, 2)),
