@@ -221,55 +221,64 @@ void bind_online(nb::module_& m) {
       .def("start_run", locked(&MotionLearner::start_run))
       .def("end_run", locked(&MotionLearner::end_run))
       .def("push_command", locked([](MotionLearner& learner, double t, double v, double omega, double vy) {
-             learner.push_command(t, {.v = v, .vy = vy, .omega = omega});
+             learner.push(CommandSample{{t, {.v = v, .vy = vy, .omega = omega}}});
            }),
            "t"_a, "v"_a, "omega"_a, "vy"_a)
       .def("push_wheels", locked([](MotionLearner& learner, double t, double v, double omega, double vy) {
-             learner.push_wheels(t, {.v = v, .vy = vy, .omega = omega});
+             learner.push(WheelSample{{t, {.v = v, .vy = vy, .omega = omega}}});
            }),
            "t"_a, "v"_a, "omega"_a, "vy"_a)
       .def("push_pose",
            locked([](MotionLearner& learner, double t, double x, double y, double yaw, long frame, double std_xy,
                      double std_yaw, bool learned, std::size_t source, std::size_t fix) {
-             learner.push_pose({.t = t,
-                                .x = x,
-                                .y = y,
-                                .yaw = yaw,
-                                .frame = frame,
-                                .std = {std_xy, std_yaw},
-                                .source = source,
-                                .fix = pose_fix(fix)},
-                               learned);
+             learner.push(MeasuredPose{.t = t,
+                                       .x = x,
+                                       .y = y,
+                                       .yaw = yaw,
+                                       .frame = frame,
+                                       .std = {std_xy, std_yaw},
+                                       .source = source,
+                                       .fix = pose_fix(fix),
+                                       .learned = learned});
            }),
            "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a, "std_xy"_a = 0.0, "std_yaw"_a = 0.0, "learned"_a = true,
            "source"_a = 0, "fix"_a = 0)
       .def("push_position",
            locked([](MotionLearner& learner, double t, double x, double y, long frame, double std_xy, bool learned,
                      std::size_t source, std::size_t fix) {
-             learner.push_pose({.t = t,
-                                .x = x,
-                                .y = y,
-                                .yaw = 0.0,
-                                .frame = frame,
-                                .std = {.xy = std_xy},
-                                .source = source,
-                                .fix = pose_fix(fix),
-                                .position = true},
-                               learned);
+             learner.push(MeasuredPose{.t = t,
+                                       .x = x,
+                                       .y = y,
+                                       .yaw = 0.0,
+                                       .frame = frame,
+                                       .std = {.xy = std_xy},
+                                       .source = source,
+                                       .fix = pose_fix(fix),
+                                       .position = true,
+                                       .learned = learned});
            }),
            "t"_a, "x"_a, "y"_a, "frame"_a, "std_xy"_a = 0.0, "learned"_a = true, "source"_a = 0, "fix"_a = 0,
            "A position without a heading, which is taken from the course of its path.")
-      .def("push_gyro", locked(&MotionLearner::push_gyro), "t"_a, "rate"_a)
-      .def_prop_ro("gyro_bias", locked(&MotionLearner::gyro_bias), "Of the gyro [rad/s], and its standard deviation.")
+      .def("push_gyro", locked([](MotionLearner& learner, double t, double rate) { learner.push(YawRate{t, rate}); }),
+           "t"_a, "rate"_a)
+      .def_prop_ro("gyro_bias", locked([](const MotionLearner& learner) {
+                     const GyroBuffer& gyro = learner.stream().gyro();
+                     return std::array{gyro.bias(), gyro.bias_std()};
+                   }),
+                   "Of the gyro [rad/s], and its standard deviation.")
       .def_prop_ro("sources", locked([](const MotionLearner& learner) {
                      return learned_sources(learner.sources(), learner.noise_scale());
                    }),
                    "Estimates of each pose source, where there are several.")
-      .def("push_attitude", locked(&MotionLearner::push_attitude), "t"_a, "roll"_a, "pitch"_a)
+      .def("push_attitude", locked([](MotionLearner& learner, double t, double roll, double pitch) {
+             learner.push(Tilt{t, roll, pitch});
+           }),
+           "t"_a, "roll"_a, "pitch"_a)
       .def("push_force",
-           locked([](MotionLearner& learner, double t, double x, double y) { learner.push_force({t, x, y}); }), "t"_a,
-           "x"_a, "y"_a, "A known force over the mass [m/s^2], which holds until the next one.")
-      .def_prop_ro("attitude_mounting", locked(&MotionLearner::attitude_mounting),
+           locked([](MotionLearner& learner, double t, double x, double y) { learner.push(KnownForce{t, x, y}); }),
+           "t"_a, "x"_a, "y"_a, "A known force over the mass [m/s^2], which holds until the next one.")
+      .def_prop_ro("attitude_mounting",
+                   locked([](const MotionLearner& learner) { return learner.stream().attitudes().mounting(); }),
                    "How the sensor of roll and pitch sits on the robot.")
       .def("push", locked([](MotionLearner& learner, const Recording& run) {
              const nb::gil_scoped_release released;
@@ -305,15 +314,16 @@ void bind_online(nb::module_& m) {
       .def("cue_surface", locked(&MotionLearner::cue_surface), "label"_a = "",
            "The surface changes now: to the one of this name, or to another where it is empty.")
       .def("completed", locked(&MotionLearner::completed), "A copy whose run has ended.")
-      .def("probable_surfaces", locked(&MotionLearner::probable_surfaces),
+      .def("probable_surfaces",
+           locked([](const MotionLearner& learner) { return learner.hypotheses().probable_surfaces(); }),
            "How probable each surface is to be the one under the robot; empty if none are remembered.")
       .def("surfaces", locked(&MotionLearner::surfaces), "The surfaces that are remembered, as they are known now.")
       .def("on_surface", locked([](const MotionLearner& learner, const Surface& surface, std::size_t structure) {
-             return learner.on_surface(surface, structure_of(structure));
+             return learner.hypotheses().on_surface(surface, structure_of(structure));
            }),
            "surface"_a, "structure"_a, "Slip on one of them in the terms of a structure; None where it has no memory.")
       .def("slip_now", locked([](const MotionLearner& learner, std::size_t structure) {
-             return learner.slip_now(structure_of(structure));
+             return learner.hypotheses().slip_now(structure_of(structure));
            }),
            "structure"_a, "The same of the surface that is driven on, whether surfaces are remembered or not.")
       .def("begin_with", locked(&MotionLearner::begin_with), "known"_a, "law"_a, "wheels"_a,
@@ -326,7 +336,8 @@ void bind_online(nb::module_& m) {
           "load", [](const nb::bytes& saved) { return Learner(MotionLearner::load(view_of(saved))); }, "saved"_a,
           "The learner whose bytes these are.")
       .def_prop_ro("settings", locked([](const MotionLearner& learner) { return learner.settings(); }))
-      .def_prop_ro("compared", locked(&MotionLearner::compared),
+      .def_prop_ro("compared",
+                   locked([](const MotionLearner& learner) { return learner.stream().evidence().compared(); }),
                    "How much of the driving was looked at for contradictions; it grows while inputs drive the robot.")
       .def_prop_ro("newest", locked(&MotionLearner::newest));
 }

@@ -3,11 +3,15 @@
 #include "slipwise/online/held_out.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "slipwise/linear/same_stamp.hpp"
+#include "slipwise/online/learner_times.hpp"
+#include "slipwise/online/student_t.hpp"
 
 namespace slipwise {
 namespace {
@@ -99,6 +103,41 @@ StudentT HorizonErrors::nominal(Structure structure) const { return nominal_[ind
 void HorizonErrors::restart_clock() {
   known_.erase(known_.begin(), known_.end() - 1);
   known_.front().until = -std::numeric_limits<double>::infinity();
+}
+
+HeldOutErrors::HeldOutErrors(std::vector<double> horizons)
+    : horizons_(std::move(horizons)), errors_(horizons_.size()), predictions_(horizons_.size()) {}
+
+StudentT HeldOutErrors::student(double t, double horizon, Structure structure) const {
+  if (horizons_.empty()) {
+    return {.inflation = 1.0, .dof = kMostDof};
+  }
+  const auto apart = [&](double each) { return std::abs(std::log(each / horizon)); };
+  const auto nearest = std::ranges::min_element(horizons_, {}, apart) - horizons_.begin();
+  return before(static_cast<std::size_t>(nearest), t).students[static_cast<std::size_t>(structure)];
+}
+
+std::vector<StudentT> HeldOutErrors::nominal(Structure structure) const {
+  std::vector<StudentT> found;
+  std::ranges::transform(errors_, std::back_inserter(found),
+                         [&](const HorizonErrors& errors) { return errors.nominal(structure); });
+  return found;
+}
+
+const HorizonErrors::Known& HeldOutErrors::before(std::size_t horizon, double start) const {
+  return errors_[horizon].before(start - std::max(horizons_[horizon], kReady));
+}
+
+void HeldOutErrors::keep(std::shared_ptr<const HeldOutPrediction> prediction) {
+  const std::size_t horizon = prediction->horizon;
+  predictions_[horizon].keep(std::move(prediction));
+}
+
+void HeldOutErrors::restart_clock() { std::ranges::for_each(errors_, &HorizonErrors::restart_clock); }
+
+void HeldOutErrors::check_loaded(const std::vector<double>& horizons) const {
+  archive::require(horizons_ == horizons && errors_.size() == horizons.size() && predictions_.size() == horizons.size(),
+                   "errors are of other horizons");
 }
 
 }  // namespace slipwise

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a learner is asked: a path from now on, the model so far, the limits of the actuator.
+// What a learner is asked: a path from now on, the model so far, the limits of the actuator, where the robot is.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -14,7 +14,6 @@
 #include "slipwise/online/behind_limits.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/motion_learner.hpp"
-#include "slipwise/online/pose_limits.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
 #include "slipwise/online/student_t.hpp"
 #include "slipwise/segment/input_spread.hpp"
@@ -27,8 +26,10 @@ constexpr double kLongest = 3600.0;    // [s] horizon
 constexpr double kFastestInput = 1e3;  // [m/s, rad/s]
 constexpr std::size_t kPathPoses = 5;  // of a prediction
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kOffsets = 1.5;  // [s] states are kept for longer than streams are late: no clock offset is larger
 
-std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
+/// Variance of a Student t over that of the normal with its scale.
+double spread(const StudentT& student) { return student.inflation * student.dof / std::max(student.dof - 2.0, 1.0); }
 
 void check(const std::vector<InputSample>& future, double horizon) {
   if (!(horizon > 0.0) || horizon > kLongest) {
@@ -84,22 +85,6 @@ std::vector<SegmentLinearization> pushed_beginnings(const MotionPosterior& motio
 
 }  // namespace
 
-StudentT MotionLearner::student_for(double horizon, Structure structure) const {
-  return student_at(stream_.newest(), horizon, structure);
-}
-
-/// Of the nearest horizon whose errors are known at `t` [s].
-StudentT MotionLearner::student_at(double t, double horizon, Structure structure) const {
-  const auto& horizons = settings_.stream.horizons;
-  if (horizons.empty()) {
-    return {.inflation = 1.0, .dof = kMostDof};
-  }
-  const auto apart = [&](double each) { return std::abs(std::log(each / horizon)); };
-  const auto nearest = std::ranges::min_element(horizons, {}, apart);
-  const HorizonErrors& errors = errors_[static_cast<std::size_t>(nearest - horizons.begin())];
-  return errors.before(t - std::max(*nearest, kReady)).students[index(structure)];
-}
-
 /// Segments that are complete with all that was pushed, and not learned yet.
 std::vector<DrivenSegment> MotionLearner::complete_now() const {
   std::vector<DrivenSegment> complete;
@@ -123,7 +108,7 @@ std::vector<DrivenSegment> MotionLearner::complete_now() const {
 /// Where slip is after all that was measured, of a drive with these limits.
 SlipNow MotionLearner::slip_at_newest(const Knowledge& known, const CommandLimits& limits) {
   std::vector<DrivenSegment> complete = settings_.learn_disturbance ? complete_now() : std::vector<DrivenSegment>{};
-  SegmentList recent = recent_before(stream_.newest());
+  SegmentList recent = known_.segments_before(stream_.newest());
   std::vector<DrivenSegment> limited;
   if (!unlimited(limits)) {
     limited.reserve(recent.size());
@@ -132,7 +117,7 @@ SlipNow MotionLearner::slip_at_newest(const Knowledge& known, const CommandLimit
     }
     std::ranges::transform(complete, complete.begin(), [&](const DrivenSegment& each) { return behind(each, limits); });
   }
-  SlipNow slip = recent_slip_.after(*known.disturbance, known.motion, recent);
+  SlipNow slip = known_.slip_after(*known.disturbance, known.motion, recent);
   for (const DrivenSegment& segment : complete) {
     known.disturbance->follow(*known.motion, slip, segment);
   }
@@ -151,7 +136,7 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
     throw std::invalid_argument("nothing was measured in this run yet: push measurements before a prediction");
   }
   work_until(stream_.newest() - kReady);
-  Knowledge knowledge = known_at(stream_.newest() - std::max(embargo, kReady));
+  Knowledge knowledge = known_.at(stream_.newest() - std::max(embargo, kReady));
   const Structure structure = knowledge.motion->structure;  // whose errors are known
   DrivenSegment ahead = stream_.segment_ahead(horizon, inputs);
   ahead.segment.sensor = {};
@@ -180,7 +165,7 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   const auto of_inputs =
       input_covariances(motion.model, motion.estimate.mean, ahead, stream_.spread_ahead(horizon, inputs), path.t);
   for (std::size_t i = 0; i < along.size(); ++i) {
-    path.students.push_back(student_for(path.t[i] - path.start, structure));
+    path.students.push_back(errors_.student(stream_.newest(), path.t[i] - path.start, structure));
     path.poses.push_back(along[i].pose);
     path.covariances.emplace_back(path.students.back().inflation * along[i].covariance + of_inputs[i]);
   }
@@ -191,26 +176,23 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
 
 LearnedModel MotionLearner::model() const {
   const MotionLearner complete = completed();
-  LearnedModel learned{.known = complete.known_.back(),
-                       .students = {},
-                       .held_out = complete.held_out_,
+  LearnedModel learned{.known = complete.known_.newest(),
+                       .students = complete.errors_.nominal(complete.known_.newest().motion->structure),
+                       .held_out = complete.errors_.predictions(),
                        .weights = complete.hypotheses_.weights(),
                        .range = complete.stream_.range(),
                        .rates = complete.stream_.rates(),
                        .held = complete.stream_.held(),
-                       .steepest = complete.steepest_,
+                       .steepest = complete.stream_.steepest(),
                        .seconds = complete.seconds_,
                        .segments = complete.hypotheses_.count(),
-                       .rejected = complete.rejected_,
+                       .rejected = complete.log_.rejected(),
                        .car = complete.stream_.car_curves(),
                        .evidence = complete.stream_.evidence()};
   learned.known.until = clock_.stamp(learned.known.until);
   const double spacing = complete.stream_.wheel_interval();
   learned.known.motion = supported(learned.known.motion, spacing, learned.segments);
   learned.known.slip = supported(learned.known.slip, spacing, learned.segments);
-  for (const HorizonErrors& errors : complete.errors_) {
-    learned.students.push_back(errors.nominal(learned.known.motion->structure));
-  }
   return learned;
 }
 
@@ -219,23 +201,51 @@ std::optional<ActuatorLimits> MotionLearner::find_limits(double wheel_separation
     return std::nullopt;  // limits are of yaw rates, and this drive is told curvatures
   }
   const MotionLearner complete = completed();
-  const auto cascaded = complete.hypotheses_.of(Structure::Cascaded);
-  const std::vector<DrivenSegment> segments(complete.command_segments_.begin(), complete.command_segments_.end());
-  if (cascaded == nullptr) {
-    const std::vector<WheelSegment> twists(complete.twist_segments_.begin(), complete.twist_segments_.end());
-    return find_pose_limits({.twists = twists,
-                             .segments = segments,
-                             .kept = *complete.known_.back().motion,
-                             .settings = settings_.hypotheses,
-                             .wheel_separation = wheel_separation});
+  return complete.limits_.find(complete.hypotheses_, *complete.known_.newest().motion, settings_.hypotheses,
+                               wheel_separation);
+}
+
+PoseFilterSettings pose_filter_settings(const LearnerSettings& settings) {
+  const MotionNoise& shape = settings.hypotheses.filter.noise.shape;
+  return {.nominal = {.xy = shape.pose_std_xy, .yaw = shape.pose_std_yaw},
+          .late_factor = settings.stream.rules.late_factor,
+          .keep = settings.stream.latency + kOffsets};
+}
+
+/// By what was known a while before each time, so that it does not depend on how fast segments are learned.
+MotionNow MotionLearner::motion_now() {
+  const auto at = [this](double t, double horizon) -> LegKnowledge {
+    const Knowledge& known = known_.at(t - kReady);
+    return {.posterior = known.motion,
+            .disturbance = known.disturbance,
+            .slip = known_.slip_after(*known.disturbance, known.motion, known_.segments_before(t - kReady)),
+            .inflation = spread(errors_.student(t, horizon, known.motion->structure))};
+  };
+  const auto leg = [this](const LegKnowledge& known, double start, double end) {
+    return motion_leg(known, stream_.stretch(start, end, leg_memory(*known.posterior)));
+  };
+  return {.inputs = stream_.inputs(),
+          .newest = stream_.newest(),
+          .latency = settings_.stream.latency,
+          .learned = seconds_,
+          .at = at,
+          .leg = leg};
+}
+
+std::optional<Odometry> MotionLearner::odometry() {
+  std::optional<Odometry> found = localizer_.odometry(motion_now());
+  if (found) {
+    found->t = clock_.stamp(found->t);
   }
-  const std::vector<WheelSegment> wheels(complete.wheel_segments_.begin(), complete.wheel_segments_.end());
-  return find_actuator_limits({.wheels = wheels,
-                               .segments = segments,
-                               .cascaded = *cascaded,
-                               .kept = *complete.known_.back().motion,
-                               .filter = settings_.hypotheses.filter,
-                               .wheel_separation = wheel_separation});
+  return found;
+}
+
+MotionState MotionLearner::motion_monitor() {
+  MotionState state = localizer_.monitor(motion_now());
+  if (state.since) {
+    state.since = clock_.stamp(*state.since);
+  }
+  return state;
 }
 
 }  // namespace slipwise

@@ -18,11 +18,6 @@
 #include "slipwise/online/motion_learner.hpp"
 
 namespace slipwise {
-namespace {
-
-constexpr std::size_t kMostEvents = 1000;  // that wait for a call
-
-}  // namespace
 
 MotionLearner::MotionLearner(const MotionLearner&) = default;
 MotionLearner::MotionLearner(MotionLearner&&) noexcept = default;
@@ -40,16 +35,6 @@ Knowledge MotionLearner::now_known(double until) const {
       .sources = settings_.stream.sources.empty() ? nullptr : std::make_shared<const SourceNoise>(sources_.noise())};
 }
 
-/// The newest of what was known at `t` [s].
-const Knowledge& MotionLearner::known_at(double t) const {
-  for (std::size_t i = known_.size() - 1; i > 0; --i) {
-    if (!later(known_[i].until, t)) {
-      return known_[i];
-    }
-  }
-  return known_.front();
-}
-
 /// What was known, where a force was, with the force as it is expected amid a segment.
 std::shared_ptr<const MotionPosterior> MotionLearner::aged(const Knowledge& known, const Segment& segment) const {
   const BodyForce force(known.motion->model.basis(), settings_.hypotheses.filter.force);
@@ -63,29 +48,14 @@ std::shared_ptr<const MotionPosterior> MotionLearner::aged(const Knowledge& know
   return std::make_shared<const MotionPosterior>(std::move(later));
 }
 
-/// The last segments that were complete at `t` [s].
-SegmentList MotionLearner::recent_before(double t) const {
-  SegmentList found;
-  if (!settings_.learn_disturbance) {
-    return found;
-  }
-  const double since = t - kRecent * settings_.stream.segment_length;
-  for (const DrivenSegment& segment : recent_) {
-    if (!later(segment.known_at, t) && later(segment.segment.start, since)) {
-      found.push_back(&segment);
-    }
-  }
-  return found;
-}
-
 /// By the present estimate of the slip: where the baseline predicts best, by the best model that has some.
 void MotionLearner::learn_source() {
   auto item = std::get<SourceSegment>(std::move(waiting_.front()));
   waiting_.pop_front();
   const double start = item.driven.segment.start;
-  KnownSources::Found found = sources_.see(*known_.back().slip, std::move(item));
+  KnownSources::Found found = sources_.see(*known_.newest().slip, std::move(item));
   if (found.poor) {
-    count({Stream::Pose, Reason::PoorPose, start});
+    reject({Stream::Pose, Reason::PoorPose, start});
   }
   waiting_.insert(waiting_.begin(), std::make_move_iterator(found.learned.begin()),
                   std::make_move_iterator(found.learned.end()));
@@ -109,7 +79,7 @@ void MotionLearner::forget(double fraction) {
   }
   work_through();  // what waits was driven on the terrain that is forgotten
   hypotheses_.forget(fraction);
-  known_.back() = now_known(known_.back().until);
+  known_.replace(now_known(known_.newest().until));
 }
 
 void MotionLearner::start_drive(const DriveStart& start) {
@@ -119,7 +89,7 @@ void MotionLearner::start_drive(const DriveStart& start) {
   start_run();
   hypotheses_.start_drive(disturbance_.law(), start);
   note_surfaces(run, ended);
-  known_.back() = now_known(known_.back().until);
+  known_.replace(now_known(known_.newest().until));
 }
 
 /// Without a memory there is nothing to recall: what is the terrain's becomes as unsure as after a suspicion.
@@ -134,7 +104,7 @@ void MotionLearner::cue_surface(const std::string& label) {
   work_through();  // what waits was driven on the surface before
   hypotheses_.cue_surface(disturbance_.law(), label);
   note_surfaces(runs_, stream_.newest());
-  known_.back() = now_known(known_.back().until);
+  known_.replace(now_known(known_.newest().until));
 }
 
 void MotionLearner::cue_terrain(const TerrainAnswer& answer) {
@@ -142,7 +112,7 @@ void MotionLearner::cue_terrain(const TerrainAnswer& answer) {
   work_through();  // what waits was driven before
   hypotheses_.hear_terrain(disturbance_.law(), answer);
   note_surfaces(runs_, stream_.newest());
-  known_.back() = now_known(known_.back().until);
+  known_.replace(now_known(known_.newest().until));
 }
 
 void MotionLearner::begin_with(const KnownBefore& known, const DisturbanceModel& law, bool wheels) {
@@ -151,7 +121,7 @@ void MotionLearner::begin_with(const KnownBefore& known, const DisturbanceModel&
     disturbance_.begin_with(law);
   }
   note_surfaces(runs_, stream_.newest());
-  known_.back() = now_known(known_.back().until);
+  known_.replace(now_known(known_.newest().until));
 }
 
 std::vector<std::string> MotionLearner::add_surfaces(const KnownBefore& other) {
@@ -166,19 +136,7 @@ void MotionLearner::consider_surfaces(double t) {
 }
 
 void MotionLearner::note_surfaces(std::size_t run, double t) {
-  for (SurfaceEvent& event : hypotheses_.take_surface_events()) {
-    surface_events_.push_back({.event = std::move(event), .run = run, .t = clock_.stamp(t)});
-  }
-  while (surface_events_.size() > kMostEvents) {
-    surface_events_.pop_front();
-  }
-}
-
-std::vector<DatedSurfaceEvent> MotionLearner::surface_events() {
-  std::vector<DatedSurfaceEvent> events(std::make_move_iterator(surface_events_.begin()),
-                                        std::make_move_iterator(surface_events_.end()));
-  surface_events_.clear();
-  return events;
+  log_.say(hypotheses_.take_surface_events(), run, clock_.stamp(t));
 }
 
 SurfaceBank MotionLearner::surfaces() const {

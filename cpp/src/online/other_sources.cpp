@@ -3,6 +3,7 @@
 // in the order of their stamps, gated, and cut into segments.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -31,7 +32,7 @@ void SegmentStream::begin_others() {
 }
 
 /// It is used `kClocksApart` after its stamp, so that inputs are known whenever it really was.
-bool SegmentStream::push_other(MeasuredPose pose, bool learned) {
+bool SegmentStream::take_other(MeasuredPose pose) {
   if (pose.source > others_.size()) {
     reject(Stream::Pose, Reason::NotFinite, pose.t);
     return false;
@@ -44,7 +45,7 @@ bool SegmentStream::push_other(MeasuredPose pose, bool learned) {
     reject(Stream::Pose, absurd ? Reason::NotFinite : Reason::TooLate, pose.t);
     return false;
   }
-  if (!learned) {
+  if (!pose.learned) {
     ++source.breaks;
     return true;
   }
@@ -53,7 +54,6 @@ bool SegmentStream::push_other(MeasuredPose pose, bool learned) {
     return false;
   }
   newest_ = std::max(newest_, pose.t);
-  advance(newest_ - settings_.latency);
   return true;
 }
 
@@ -113,48 +113,48 @@ void SegmentStream::emit_other(const PoseSource& source, const SegmentCut& cut, 
   items_.emplace_back(SourceSegment{std::move(found), cut.first.source, classes_of(cut)});
 }
 
-void SegmentStream::push(const Measurement& measurement) {
-  std::visit(Takes{[&](const CommandSample& command) { push_command(command.sample); },
-                   [&](const WheelSample& wheels) { push_wheels(wheels.sample); },
-                   [&](const KnownForce& force) { push_force(force); }, [&](const Tilt& tilt) { push_attitude(tilt); },
-                   [&](const MeasuredPose& pose) { push_pose(pose); }, [&](const YawRate& rate) { push_gyro(rate); }},
-             measurement);
+bool SegmentStream::push(const Measurement& measurement) {
+  const bool taken = std::visit([this](const auto& sample) { return take(sample); }, measurement);
+  advance(newest_ - settings_.latency);
+  return taken;
 }
 
-std::optional<Tilt> SegmentStream::push_attitude(const Tilt& measured) {
-  std::optional<Tilt> tilt;
-  if (arrives(Stream::Attitude, measured.t, std::array{measured.roll, measured.pitch})) {
-    tilt = attitudes_.level(measured);
-    if (tilt) {
-      tilts_.push(*tilt);
-    } else {
-      reject(Stream::Attitude, Reason::SteepAttitude, measured.t);
-    }
+bool SegmentStream::take(const Tilt& measured) {
+  if (!arrives(Stream::Attitude, measured.t, std::array{measured.roll, measured.pitch})) {
+    return false;
   }
-  advance(newest_ - settings_.latency);
-  return tilt;
+  const std::optional<Tilt> tilt = attitudes_.level(measured);
+  if (!tilt) {
+    reject(Stream::Attitude, Reason::SteepAttitude, measured.t);
+    return false;
+  }
+  tilts_.push(*tilt);
+  steepest_ = std::max({steepest_, std::abs(tilt->roll), std::abs(tilt->pitch)});
+  return true;
 }
 
-void SegmentStream::push_force(const KnownForce& force) {
-  if (arrives(Stream::Force, force.t, std::array{force.x, force.y})) {
-    if (tilts_.empty()) {
-      forces_.push(force);
-    } else {
-      reject(Stream::Force, Reason::ForceBesideAttitude, force.t);
-    }
+bool SegmentStream::take(const KnownForce& force) {
+  if (!arrives(Stream::Force, force.t, std::array{force.x, force.y})) {
+    return false;
   }
-  advance(newest_ - settings_.latency);
+  if (!tilts_.empty()) {
+    reject(Stream::Force, Reason::ForceBesideAttitude, force.t);
+    return false;
+  }
+  forces_.push(force);
+  return true;
 }
 
-void SegmentStream::push_gyro(const YawRate& sample) {
-  if (arrives(Stream::Gyro, sample.t, std::array{sample.rate})) {
-    gyro_.push(sample);
-    evidence_.push_gyro(sample);
-    if (settings_.heading_only) {
-      turn_on(sample);
-    }
+bool SegmentStream::take(const YawRate& rate) {
+  if (!arrives(Stream::Gyro, rate.t, std::array{rate.rate})) {
+    return false;
   }
-  advance(newest_ - settings_.latency);
+  gyro_.push(rate);
+  evidence_.push_gyro(rate);
+  if (settings_.heading_only) {
+    turn_on(rate);
+  }
+  return true;
 }
 
 }  // namespace slipwise

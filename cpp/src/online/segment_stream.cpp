@@ -117,10 +117,10 @@ bool SegmentStream::arrives(Stream stream, double t, std::span<const double> num
   return true;
 }
 
-void SegmentStream::push_input(Stream stream, const InputSample& sample) {
+bool SegmentStream::take_input(Stream stream, const InputSample& sample) {
   const auto& [v, vy, omega] = sample.twist;
   if (!arrives(stream, sample.t, std::array{v, vy, omega})) {
-    return;
+    return false;
   }
   auto& gates = speeds_[index(stream)];
   const bool measured = stream == Stream::Wheels;
@@ -128,7 +128,7 @@ void SegmentStream::push_input(Stream stream, const InputSample& sample) {
                              gates[2].plausible(omega, measured)};
   if (!std::ranges::all_of(plausible, std::identity{})) {
     reject(stream, Reason::AbsurdSpeed, sample.t);
-    return;
+    return false;
   }
   InputBuffer& history = stream == Stream::Command ? commands_ : wheels_;
   history.push(sample);
@@ -136,57 +136,55 @@ void SegmentStream::push_input(Stream stream, const InputSample& sample) {
     range_ = {std::min(range_[0], v), std::max(range_[1], v), std::min(range_[2], omega), std::max(range_[3], omega)};
     held_.push(sample);
   }
+  return true;
 }
 
-void SegmentStream::push_command(const InputSample& sample) {
-  if (car_) {
-    CarStream& car = *car_;
-    const std::size_t before = commands_.size();
-    push_input(Stream::Command, {sample.t, car.expected(sample, settings_.latency)});
-    if (commands_.size() > before) {
-      car.push_command(sample, settings_.latency);
-    }
-  } else {
-    push_input(Stream::Command, sample);
+bool SegmentStream::take(const CommandSample& command) {
+  const InputSample& sample = command.sample;
+  if (!car_) {
+    return take_input(Stream::Command, sample);
   }
-  advance(newest_ - settings_.latency);
-}
-
-void SegmentStream::push_wheels(const InputSample& sample) {
-  const std::size_t before = wheels_.size();
-  push_input(Stream::Wheels, sample);
-  if (wheels_.size() > before) {
-    wheel_stamps_.push_back(sample.t);
+  CarStream& car = *car_;
+  const bool taken = take_input(Stream::Command, {sample.t, car.expected(sample, settings_.latency)});
+  if (taken) {
+    car.push_command(sample, settings_.latency);
   }
-  advance(newest_ - settings_.latency);
+  return taken;
 }
 
-bool SegmentStream::push_pose(const MeasuredPose& pose, bool learned) {
+bool SegmentStream::take(const WheelSample& wheels) {
+  const bool taken = take_input(Stream::Wheels, wheels.sample);
+  if (taken) {
+    wheel_stamps_.push_back(wheels.sample.t);
+  }
+  return taken;
+}
+
+bool SegmentStream::take(const MeasuredPose& pose) {
   evidence_.see_stamp(pose.t);
   if (pose.fix == PoseFix::None) {
     reject(Stream::Pose, Reason::NoFix, pose.t);
     return false;
   }
-  return pose.source == 0 ? push_first(pose, learned) : push_other(pose, learned);
+  return pose.source == 0 ? take_first(pose) : take_other(pose);
 }
 
-bool SegmentStream::push_first(const MeasuredPose& pose, bool learned) {
+bool SegmentStream::take_first(const MeasuredPose& pose) {
   const double yaw = pose.position ? 0.0 : pose.yaw;
   const std::array numbers{pose.x, pose.y, yaw, allowed(pose.std.xy), allowed(pose.std.yaw)};
   const bool taken = arrives(Stream::Pose, pose.t, numbers);
-  if (taken && learned && pose.position != position_last_) {
+  if (taken && pose.learned && pose.position != position_last_) {
     ++breaks_;
     position_last_ = pose.position;
   }
-  if (taken && learned) {
+  if (taken && pose.learned) {
     poses_.push_back(pose);
     poses_.back().yaw = yaw;
     poses_.back().frame += kFramesApart * breaks_;
   } else if (taken && learned_last_) {
     ++breaks_;
   }
-  learned_last_ = taken ? learned : learned_last_;
-  advance(newest_ - settings_.latency);
+  learned_last_ = taken ? pose.learned : learned_last_;
   return taken;
 }
 

@@ -68,11 +68,11 @@ void push_arrivals(MotionLearner& learner, const Recording& run, std::vector<Arr
   std::ranges::stable_sort(arrivals, {}, &Arrival::at);
   for (const auto& [at, stream, i] : arrivals) {
     if (stream == 0) {
-      learner.push_command(run.commands[i].t, run.commands[i].twist);
+      learner.push(CommandSample{{run.commands[i].t, run.commands[i].twist}});
     } else if (stream == 1) {
-      learner.push_wheels(run.wheels[i].t, run.wheels[i].twist);
+      learner.push(WheelSample{{run.wheels[i].t, run.wheels[i].twist}});
     } else {
-      learner.push_pose(run.poses[i]);
+      learner.push(run.poses[i]);
     }
     arrived(at);
   }

@@ -57,9 +57,9 @@ TEST_CASE("segments of a car get twists that its curves make, and the curves are
   const Recording run = drive(60.0);
   std::size_t pose = 0;
   for (const InputSample& command : run.commands) {
-    stream.push_command(command);
+    stream.push(CommandSample{command});
     for (; pose < run.poses.size() && run.poses[pose].t <= command.t; ++pose) {
-      stream.push_pose(run.poses[pose]);
+      stream.push(run.poses[pose]);
     }
   }
   stream.end_run();
@@ -137,17 +137,17 @@ TEST_CASE("poses that come late by less than the latency change nothing") {
   SegmentStream together(car_settings()), late(car_settings());
   std::size_t first = 0, second = 0;
   for (const InputSample& command : run.commands) {
-    together.push_command(command);
-    late.push_command(command);
+    together.push(CommandSample{command});
+    late.push(CommandSample{command});
     for (; first < run.poses.size() && run.poses[first].t <= command.t; ++first) {
-      together.push_pose(run.poses[first]);
+      together.push(run.poses[first]);
     }
     for (; second < run.poses.size() && run.poses[second].t <= command.t - 0.4; ++second) {
-      late.push_pose(run.poses[second]);
+      late.push(run.poses[second]);
     }
   }
   for (; second < first; ++second) {
-    late.push_pose(run.poses[second]);
+    late.push(run.poses[second]);
   }
   together.end_run();
   late.end_run();

@@ -109,13 +109,13 @@ TEST_CASE("it fills the gaps of the better one, and results do not depend on how
   std::size_t next = 0;
   for (std::size_t i = 0; i < run.commands.size(); ++i) {
     for (; next < arrivals.size() && arrivals[next].first <= run.commands[i].t; ++next) {
-      learner.push_pose(arrivals[next].second);
+      learner.push(arrivals[next].second);
     }
-    learner.push_command(run.commands[i].t, run.commands[i].twist);
-    learner.push_wheels(run.wheels[i].t, run.wheels[i].twist);
+    learner.push(CommandSample{{run.commands[i].t, run.commands[i].twist}});
+    learner.push(WheelSample{{run.wheels[i].t, run.wheels[i].twist}});
   }
   for (; next < arrivals.size(); ++next) {
-    learner.push_pose(arrivals[next].second);
+    learner.push(arrivals[next].second);
   }
   learner.end_run();
   CHECK(learner.model().segments == expected.model().segments);
@@ -131,7 +131,7 @@ TEST_CASE("a saved learner goes on with its sources, and positions without a fix
   loaded.end_run();
   learner.end_run();
   CHECK(loaded.model().known.motion->estimate.mean == learner.model().known.motion->estimate.mean);
-  learner.push_pose({.t = 200.0, .x = 0.0, .y = 0.0, .yaw = 0.0, .fix = PoseFix::None});
+  learner.push(MeasuredPose{.t = 200.0, .x = 0.0, .y = 0.0, .yaw = 0.0, .fix = PoseFix::None});
   const auto rejected = learner.model().rejected[static_cast<std::size_t>(Stream::Pose)];
   CHECK(rejected[static_cast<std::size_t>(Reason::NoFix)] == 1);
 }

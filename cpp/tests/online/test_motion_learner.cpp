@@ -61,9 +61,9 @@ TEST_CASE("what is learned does not depend on how streams interleave within the 
 TEST_CASE("what is later than the latency is rejected and counted") {
   MotionLearner learner(learner_settings(false));
   learner.start_run();
-  learner.push_pose({.t = 10.0, .x = 0.0, .y = 0.0, .yaw = 0.0});
-  learner.push_wheels(9.4, {1.0, 0.0, 0.0});
-  learner.push_wheels(9.6, {1.0, 0.0, 0.0});
+  learner.push(MeasuredPose{.t = 10.0, .x = 0.0, .y = 0.0, .yaw = 0.0});
+  learner.push(WheelSample{{9.4, {1.0, 0.0, 0.0}}});
+  learner.push(WheelSample{{9.6, {1.0, 0.0, 0.0}}});
   const auto events = learner.events();
   REQUIRE(events.size() == 1);
   CHECK(events[0].kind == LearnerEvent::Kind::Rejected);

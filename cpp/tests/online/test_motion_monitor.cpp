@@ -128,9 +128,9 @@ TEST_CASE("a robot that is not told to move, or whose inputs are unknown, is not
     for (int i = 0; i < 100; ++i) {
       const double t = 43.0 + 0.05 * i;
       if (!stale) {
-        learner.push_command(t, {0.0, 0.0, 0.0});
+        learner.push(CommandSample{{t, {0.0, 0.0, 0.0}}});
       }
-      learner.push_pose({.t = t + 0.001, .x = robot.pose.back().x, .y = robot.pose.back().y, .yaw = 0.0});
+      learner.push(MeasuredPose{.t = t + 0.001, .x = robot.pose.back().x, .y = robot.pose.back().y, .yaw = 0.0});
       CHECK_FALSE(learner.motion_monitor().stuck);
     }
     CHECK_FALSE(learner.motion_monitor().fraction);
@@ -145,8 +145,8 @@ TEST_CASE("a robot that stops at once when it is told to, where it lagged before
   const MeasuredPose last = robot.run.poses.back();
   for (int i = 0; i < 60; ++i) {
     const double t = 40.01 + 0.05 * i;
-    learner.push_command(t, {0.0, 0.0, 0.0});
-    learner.push_pose({.t = t + 0.001, .x = last.x, .y = last.y, .yaw = last.yaw});
+    learner.push(CommandSample{{t, {0.0, 0.0, 0.0}}});
+    learner.push(MeasuredPose{.t = t + 0.001, .x = last.x, .y = last.y, .yaw = last.yaw});
     CHECK_FALSE(learner.motion_monitor().stuck);
   }
 }
@@ -171,14 +171,14 @@ int alarms_at_reversals(double lag, double late, std::uint64_t seed) {
   bool before = false;
   for (int i = 0; i < 1990; ++i) {
     const double t = 0.05 * i;
-    learner.push_wheels(t, {0.0, 0.0, asked(t)});
+    learner.push(WheelSample{{t, {0.0, 0.0, asked(t)}}});
     if (i % 2 == 0) {
       const double seen = t - late * std::clamp((t - 61.0) / 2.0, 0.0, 1.0);
       const Pose2& pose = path[static_cast<std::size_t>(seen / kStep)];
-      learner.push_pose({.t = t + 0.01,
-                         .x = pose.x + noise(generator),
-                         .y = pose.y + noise(generator),
-                         .yaw = pose.theta + 0.5 * noise(generator)});
+      learner.push(MeasuredPose{.t = t + 0.01,
+                                .x = pose.x + noise(generator),
+                                .y = pose.y + noise(generator),
+                                .yaw = pose.theta + 0.5 * noise(generator)});
       const bool stuck = learner.motion_monitor().stuck;
       alarms += stuck && !before ? 1 : 0;
       before = stuck;

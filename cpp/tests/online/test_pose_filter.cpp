@@ -141,8 +141,8 @@ TEST_CASE("poses that the inputs do not explain are followed") {
   int unused = 0;
   for (int i = 0; i < 200; ++i) {  // pushed at 1 m/s, with wheels that stand still
     const double t = 0.05 * i;
-    learner.push_command(t, {0.0, 0.0, 0.0});
-    learner.push_pose({.t = t + 0.001, .x = t < 2.0 ? 0.0 : t - 2.0, .y = 0.0, .yaw = 0.0});
+    learner.push(CommandSample{{t, {0.0, 0.0, 0.0}}});
+    learner.push(MeasuredPose{.t = t + 0.001, .x = t < 2.0 ? 0.0 : t - 2.0, .y = 0.0, .yaw = 0.0});
     const Odometry odometry = learner.odometry().value();
     CHECK(std::abs(odometry.pose.x - (t < 2.0 ? 0.0 : t - 2.0)) < 0.35);
     unused += odometry.since_pose > 0.01 ? 1 : 0;
@@ -187,9 +187,9 @@ TEST_CASE("before anything is learned, poses and inputs alone give odometry; bef
   MotionLearner learner(learner_settings(true));
   learner.start_run();
   CHECK_FALSE(learner.odometry());
-  learner.push_command(1.0, {0.5, 0.0, 0.0});
+  learner.push(CommandSample{{1.0, {0.5, 0.0, 0.0}}});
   CHECK_FALSE(learner.odometry());
-  learner.push_pose({.t = 1.05, .x = 3.0, .y = -2.0, .yaw = 0.5, .frame = 7});
+  learner.push(MeasuredPose{.t = 1.05, .x = 3.0, .y = -2.0, .yaw = 0.5, .frame = 7});
   const std::optional<Odometry> odometry = learner.odometry();
   REQUIRE(odometry);
   CHECK(odometry->pose.x == doctest::Approx(3.0));
@@ -203,8 +203,8 @@ TEST_CASE("before anything is learned, poses and inputs alone give odometry; bef
 void stand(MotionLearner& learner, double begin, double x, int poses, long frame = 0) {
   for (int i = 0; i < poses; ++i) {
     const double t = begin + 0.05 * i;
-    learner.push_command(t, {0.0, 0.0, 0.0});
-    learner.push_pose({.t = t + 0.001, .x = x, .y = 1.0, .yaw = 3.14, .frame = frame});
+    learner.push(CommandSample{{t, {0.0, 0.0, 0.0}}});
+    learner.push(MeasuredPose{.t = t + 0.001, .x = x, .y = 1.0, .yaw = 3.14, .frame = frame});
   }
 }
 
@@ -227,8 +227,8 @@ TEST_CASE("whatever standard deviations come with poses, odometry is finite") {
     MotionLearner learner(learner_settings(true));
     learner.start_run();
     for (int i = 0; i < 60; ++i) {
-      learner.push_command(0.05 * i, {0.5, 0.0, 0.2});
-      learner.push_pose({.t = 0.05 * i + 0.001, .x = 0.02 * i, .y = 0.0, .yaw = 0.0, .std = {std, std}});
+      learner.push(CommandSample{{0.05 * i, {0.5, 0.0, 0.2}}});
+      learner.push(MeasuredPose{.t = 0.05 * i + 0.001, .x = 0.02 * i, .y = 0.0, .yaw = 0.0, .std = {std, std}});
       const std::optional<Odometry> odometry = learner.odometry();
       REQUIRE(odometry);
       REQUIRE(odometry->pose.vector().allFinite());
@@ -276,8 +276,8 @@ TEST_CASE("a heading at half a turn is not averaged with its opposite") {
   MotionLearner learner(learner_settings(true));
   learner.start_run();
   for (int i = 0; i < 40; ++i) {
-    learner.push_command(0.05 * i, {0.0, 0.0, 0.0});
-    learner.push_pose({.t = 0.05 * i + 0.001, .x = 0.0, .y = 0.0, .yaw = i % 2 == 0 ? 3.14 : -3.14});
+    learner.push(CommandSample{{0.05 * i, {0.0, 0.0, 0.0}}});
+    learner.push(MeasuredPose{.t = 0.05 * i + 0.001, .x = 0.0, .y = 0.0, .yaw = i % 2 == 0 ? 3.14 : -3.14});
   }
   CHECK(std::abs(wrap_angle(learner.odometry()->pose.theta - 3.14159)) < 0.01);
 }
@@ -285,11 +285,11 @@ TEST_CASE("a heading at half a turn is not averaged with its opposite") {
 TEST_CASE("without inputs the pose becomes unsure, and without anyone asking nothing piles up") {
   MotionLearner learner(learner_settings(true));
   learner.start_run();
-  learner.push_command(0.0, {0.5, 0.0, 0.0});
+  learner.push(CommandSample{{0.0, {0.5, 0.0, 0.0}}});
   for (int i = 0; i < 2000; ++i) {
-    learner.push_pose({.t = 0.05 * i, .x = 0.0, .y = 0.0, .yaw = 0.0});
+    learner.push(MeasuredPose{.t = 0.05 * i, .x = 0.0, .y = 0.0, .yaw = 0.0});
   }
-  learner.push_attitude(105.0, 0.0, 0.0);
+  learner.push(Tilt{105.0, 0.0, 0.0});
   const std::optional<Odometry> odometry = learner.odometry();
   REQUIRE(odometry);
   CHECK(odometry->since_pose == doctest::Approx(105.0 - 99.95));

@@ -132,4 +132,34 @@ class HorizonErrors {
   std::array<StudentCalibration, kStructures> nominal_;
 };
 
+/// Of all horizons: how large errors were, and the last predictions.
+class HeldOutErrors {
+ public:
+  explicit HeldOutErrors(std::vector<double> horizons = {});
+
+  /// Of the nearest horizon whose errors are known at `t` [s].
+  StudentT student(double t, double horizon, Structure structure) const;
+  /// Of one horizon, nothing recent being known, for each of them.
+  std::vector<StudentT> nominal(Structure structure) const;
+  /// What was known of the errors of one of the horizons when a prediction from `start` [s] on was made.
+  const HorizonErrors::Known& before(std::size_t horizon, double start) const;
+  HorizonErrors& of(std::size_t horizon) { return errors_[horizon]; }
+  void keep(std::shared_ptr<const HeldOutPrediction> prediction);
+  const std::vector<HeldOutPredictions>& predictions() const { return predictions_; }
+  void restart_clock();
+  /// \throws std::invalid_argument where a loaded one is of other horizons.
+  void check_loaded(const std::vector<double>& horizons) const;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.horizons_, self.errors_, self.predictions_);
+  }
+
+ private:
+  std::vector<double> horizons_;  ///< [s]
+  std::vector<HorizonErrors> errors_;
+  std::vector<HeldOutPredictions> predictions_;
+};
+
 }  // namespace slipwise

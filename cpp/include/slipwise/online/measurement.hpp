@@ -31,4 +31,12 @@ struct Takes : Functions... {
   using Functions::operator()...;
 };
 
+/// Its stamp [s].
+inline double& stamp_of(Measurement& measurement) {
+  return std::visit(Takes{[](CommandSample& command) -> double& { return command.sample.t; },
+                          [](WheelSample& wheels) -> double& { return wheels.sample.t; },
+                          [](auto& other) -> double& { return other.t; }},
+                    measurement);
+}
+
 }  // namespace slipwise

@@ -14,15 +14,14 @@
 #include <vector>
 
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
-#include "slipwise/online/actuator_limits.hpp"
 #include "slipwise/online/held_out.hpp"
 #include "slipwise/online/known_sources.hpp"
-#include "slipwise/online/motion_monitor.hpp"
-#include "slipwise/online/pose_filter.hpp"
-#include "slipwise/online/recent_slip.hpp"
+#include "slipwise/online/learner_log.hpp"
+#include "slipwise/online/limit_evidence.hpp"
+#include "slipwise/online/localizer.hpp"
+#include "slipwise/online/recent_knowledge.hpp"
 #include "slipwise/online/run_clock.hpp"
 #include "slipwise/online/segment_stream.hpp"
-#include "slipwise/online/student_calibration.hpp"
 
 namespace slipwise {
 
@@ -35,31 +34,6 @@ struct LearnerSettings {
 
 /// The filter over poses that goes with a learner.
 PoseFilterSettings pose_filter_settings(const LearnerSettings& settings);
-
-/// What a learner has to say. Which fields are meant depends on the kind.
-struct LearnerEvent {
-  enum class Kind : std::uint8_t { SegmentLearned, Rejected, TerrainChange, HeldOut, Refit };
-  friend constexpr std::size_t enumerators(Kind /*type*/) { return 5; }
-  Kind kind;
-  std::size_t run;  ///< in the order in which runs were started
-  double t;         ///< [s]
-  Stream stream = Stream::Pose;
-  Reason reason = Reason::NotFinite;
-  std::array<StructureUpdate, kStructures> updates = {};
-  std::array<double, kStructures> weights = {};
-  /// What each structure knows after the segment; empty if it is not tried.
-  std::array<std::shared_ptr<const MotionPosterior>, kStructures> posteriors = {};
-  std::shared_ptr<const HeldOutPrediction> prediction = {};
-  /// After a segment that was learned, where surfaces are remembered: how probable each is.
-  std::vector<SurfaceProbability> surfaces = {};
-};
-
-/// Something that happened to the surfaces, and when.
-struct DatedSurfaceEvent {
-  SurfaceEvent event;
-  std::size_t run;  ///< in the order in which runs were started
-  double t;         ///< [s] end of the last segment that spoke, or of the run before a drive
-};
 
 /// What is known of the time ahead beside the inputs.
 struct KnownAhead {
@@ -75,17 +49,6 @@ struct PredictedPath {
   std::vector<Eigen::Matrix3d> covariances;  ///< [N] of a Student t each, its inflation included
   std::vector<StudentT> students;            ///< [N] of the nearest horizon whose errors are known
   Structure structure;                       ///< that predicts
-};
-
-/// Where the robot is, and how it moves, as nav_msgs/Odometry says it.
-struct Odometry {
-  double t;                          ///< [s] stamp of the newest measurement
-  long frame;                        ///< of the last pose used
-  Pose2 pose;                        ///< of base_link in the frame of the measured poses; its yaw is not wrapped
-  Eigen::Matrix3d covariance;        ///< of (x, y, yaw) [m, m, rad] in the axes of that frame
-  BodyTwist twist;                   ///< of base_link in its own axes, slip included
-  Eigen::Matrix3d twist_covariance;  ///< of (v, vy, omega) [m/s, m/s, rad/s]
-  double since_pose;                 ///< [s] since the last pose that was used
 };
 
 /// What was learned so far.
@@ -121,25 +84,14 @@ class MotionLearner {
   void start_run();
   /// Nothing more comes of this run: what waits for later measurements is learned.
   void end_run();
-  /// Takes a measurement of any kind, as the function for its kind does.
+  /// Takes a measurement of any kind. Of a car (`StreamSettings::car`) v of a command is the throttle and omega the
+  /// steering. Of a position alone the heading is taken from the course of its path; odometry needs poses. A gyro's
+  /// bias is learned. A known force pushes as gravity does on a slope; beside attitudes it is rejected.
   void push(const Measurement& measurement);
-  /// Of a car (`StreamSettings::car`) v is the throttle and omega the steering.
-  void push_command(double t, const BodyTwist& twist);
-  void push_wheels(double t, const BodyTwist& twist);
-  /// A pose, or a position alone, whose heading is taken from the course of its path; odometry needs poses.
-  /// A pose that is not `learned` from serves odometry and the monitor alone; no segment lies across it.
-  void push_pose(const MeasuredPose& measured, bool learned = true);
-  /// Yaw rate of a gyro [rad/s], counter-clockwise; turns between positions are taken from it, its bias is learned.
-  void push_gyro(double t, double rate);
-  /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
-  void push_attitude(double t, double roll, double pitch);
-  /// A known force over the mass along the robot's axes [m/s^2], which holds until the next one; it pushes as gravity
-  /// does on a slope. Beside attitudes it is rejected.
-  void push_force(const KnownForce& known);
 
   /// What happened since the last call; the oldest are dropped, and counted, when they wait for long.
-  std::vector<LearnerEvent> events();
-  std::size_t dropped_events() const { return dropped_events_; }
+  std::vector<LearnerEvent> events() { return log_.take_events(); }
+  std::size_t dropped_events() const { return log_.dropped(); }
 
   /// Where the robot will be if it is given the `future` inputs, over `horizon` [s] from the newest measurement on.
   /// Parameters are those known `embargo` [s] before.
@@ -176,16 +128,8 @@ class MotionLearner {
   void cue_terrain(const TerrainAnswer& answer);
   /// The surfaces that are remembered, the present one as it is known now.
   SurfaceBank surfaces() const;
-  /// How probable each surface is to be the one under the robot; empty if none are remembered.
-  std::vector<SurfaceProbability> probable_surfaces() const { return hypotheses_.probable_surfaces(); }
   /// What happened to them since the last call; the oldest are dropped when they wait for long.
-  std::vector<DatedSurfaceEvent> surface_events();
-  /// Slip on a surface of `surfaces()` in the terms of a structure; empty if it has no memory.
-  std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const {
-    return hypotheses_.on_surface(surface, structure);
-  }
-  /// The same of the surface that is driven on, whether surfaces are remembered or not.
-  std::optional<SlipOnSurface> slip_now(Structure structure) const { return hypotheses_.slip_now(structure); }
+  std::vector<DatedSurfaceEvent> surface_events() { return log_.take_surface_events(); }
   /// Begins with what another learner knew: its robot, its slip disturbance `law` and the surfaces it remembers. How
   /// large errors are is learned again. `wheels` says whether wheel speeds will come beside the commands.
   /// \throws std::invalid_argument when something was learned already, or the terms are not those that are learned.
@@ -195,59 +139,48 @@ class MotionLearner {
   /// \throws std::invalid_argument when the terms are not those that are learned.
   std::vector<std::string> add_surfaces(const KnownBefore& other);
 
+  /// What explains the motion: structures, surfaces and how probable each is, slip on one of them.
+  const MotionHypotheses& hypotheses() const { return hypotheses_; }
   /// Estimates of the sources of poses, where there are several.
   const KnownSources& sources() const { return sources_; }
-  /// How the sensor of roll and pitch sits on the robot.
-  AttitudeMounting attitude_mounting() const { return stream_.attitudes().mounting(); }
+  /// What was measured: the bias of a gyro, how the sensor of roll and pitch sits, what contradicts each other.
+  const SegmentStream& stream() const { return stream_; }
   /// Learned factor of the noise variances of (x, y, theta), of the poses of the first.
-  Eigen::Vector3d noise_scale() const { return known_.back().slip->noise_scale; }
-  /// Bias of the gyro [rad/s], and its standard deviation.
-  std::array<double, 2> gyro_bias() const { return {stream_.gyro().bias(), stream_.gyro().bias_std()}; }
+  Eigen::Vector3d noise_scale() const { return known_.newest().slip->noise_scale; }
   const LearnerSettings& settings() const { return settings_; }
   /// All of it as bytes, from which `load` makes a learner that goes on to the same results.
   std::string save() const;
   /// \throws std::invalid_argument, saying what to do, when these are not the bytes that this version saved.
   static MotionLearner load(std::string_view saved);
 
-  /// How much of the driving was looked at for contradictions; it grows whether anything can be learned or not.
-  std::size_t compared() const { return stream_.evidence().compared(); }
   /// Stamp of the newest measurement of the run [s]; minus infinity before the first.
   double newest() const { return clock_.stamp(stream_.newest()); }
 
-  /// Names what is saved. Where slip is now is found again from the rest.
+  /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.settings_, self.stream_, self.hypotheses_, self.disturbance_, self.waiting_, self.started_, self.known_);
-    a(self.recent_, self.wheel_segments_, self.twist_segments_, self.command_segments_, self.errors_, self.held_out_,
-      self.events_);
-    a(self.dropped_events_, self.rejected_, self.runs_, self.run_begins_, self.before_run_, self.steepest_);
-    a(self.seconds_, self.surface_events_, self.sources_, self.clock_);
+    a(self.limits_, self.errors_, self.log_, self.runs_, self.run_begins_, self.before_run_, self.seconds_);
+    a(self.sources_, self.clock_);
   }
 
  private:
   void take_in();
   bool work();
+  bool learn_front();
   void learn_source();
-  void count(const Rejected& rejected);
+  void reject(const Rejected& rejected);
   void finish_sources();
-  void prepare_prediction();
   void work_until(double t);
   void work_through();
   void learn_disturbance(const DrivenSegment& segment);
   void publish(const DrivenSegment& segment);
   void judge(const TargetSegment& target);
-  const Knowledge& known_at(double t) const;
   std::shared_ptr<const MotionPosterior> aged(const Knowledge& known, const Segment& segment) const;
-  SegmentList recent_before(double t) const;
   SlipNow slip_at_newest(const Knowledge& known, const CommandLimits& limits);
   std::vector<DrivenSegment> complete_now() const;
   Knowledge now_known(double until) const;
-  StudentT student_for(double horizon, Structure structure) const;
-  StudentT student_at(double t, double horizon, Structure structure) const;
-  LegKnowledge leg_knowledge(double t, double horizon);
-  MotionLeg leg(const LegKnowledge& known, double start, double end) const;
-  Eigen::Matrix3d unknown_motion(double start, double end) const;
-  void say(LearnerEvent event);
+  MotionNow motion_now();
   double counted(double stamp);
   void consider_surfaces(double t);
   void note_surfaces(std::size_t run, double t);
@@ -258,27 +191,17 @@ class MotionLearner {
   SegmentStream stream_;
   MotionHypotheses hypotheses_;
   DisturbanceFilter disturbance_;
-  std::deque<StreamItem> waiting_;              ///< segments in the order in which they are learned
-  bool started_ = false;                        ///< whether the first of them is being learned
-  std::deque<Knowledge> known_;                 ///< of late; the last is the newest
-  std::deque<DrivenSegment> recent_;            ///< segments of the run
-  std::deque<WheelSegment> wheel_segments_;     ///< the last, in which limits are looked for
-  std::deque<WheelSegment> twist_segments_;     ///< the same, of twists between poses
-  std::deque<DrivenSegment> command_segments_;  ///< the last, by which limits are judged
-  RecentSlip recent_slip_;                      ///< found again from the rest where it is loaded
-  PoseFilter pose_filter_;                      ///< not saved
-  MotionMonitor monitor_;                       ///< not saved
-  std::vector<HorizonErrors> errors_;
-  std::vector<HeldOutPredictions> held_out_;
-  std::deque<LearnerEvent> events_;
-  std::size_t dropped_events_ = 0;
-  RejectionCounts rejected_{};
+  std::deque<StreamItem> waiting_;  ///< segments in the order in which they are learned
+  bool started_ = false;            ///< whether the first of them is being learned
+  RecentKnowledge known_;
+  LimitEvidence limits_;
+  Localizer localizer_;  ///< not saved
+  HeldOutErrors errors_;
+  LearnerLog log_;
   std::size_t runs_ = 0;
   bool run_begins_ = true;  ///< no measurement of the run has come yet
   double before_run_;       ///< newest stamp of the runs before [s]
-  double steepest_ = 0.0;
   double seconds_ = 0.0;
-  std::deque<DatedSurfaceEvent> surface_events_;
   KnownSources sources_;  ///< where there are several, or fixes
 };
 

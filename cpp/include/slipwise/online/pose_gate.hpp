@@ -35,7 +35,8 @@ struct MeasuredPose {
   PoseStdRatio std_ratio = {};
   std::size_t source = 0;  ///< of those that measure poses
   PoseFix fix = PoseFix::Unknown;
-  bool position = false;                                     ///< whether only the position was measured
+  bool position = false;  ///< whether only the position was measured
+  bool learned = true;    ///< otherwise it says where the robot is, and no segment lies across it
   std::array<std::optional<ChordHeading>, 2> headings = {};  ///< of a position: the first in use, and another
 };
 

@@ -100,18 +100,8 @@ class SegmentStream {
   void start_run();
   /// No measurement of this run follows.
   void end_run();
-  void push(const Measurement& measurement);
-  void push_command(const InputSample& sample);
-  void push_wheels(const InputSample& sample);
-  /// Roll and pitch [rad]; by REP-103 nose down is positive pitch. Returns those of the robot, where they may be used.
-  std::optional<Tilt> push_attitude(const Tilt& measured);
-  /// A known force, which holds until the next one; beside attitudes it is rejected.
-  void push_force(const KnownForce& force);
-  /// Yaw rate [rad/s] of a gyro, from which turns between positions are taken; poses tell theirs themselves.
-  void push_gyro(const YawRate& sample);
-  /// Whether it may be used; otherwise it is rejected.
-  /// No segment lies between a pose and what is a position alone.
-  bool push_pose(const MeasuredPose& pose, bool learned = true);
+  /// Takes a measurement; whether it may be used. Otherwise it is rejected.
+  bool push(const Measurement& measurement);
 
   /// What became complete since the last call, in the order in which it is to be learned.
   std::vector<StreamItem> take_items();
@@ -129,6 +119,8 @@ class SegmentStream {
   /// What shows whether poses and inputs contradict each other.
   const MotionEvidence& evidence() const { return evidence_; }
   bool wheels_known() const { return wheels_ever_; }
+  /// Greatest roll or pitch [rad], of all runs.
+  double steepest() const { return steepest_; }
   /// Least and greatest speed, then yaw rate, of the inputs that motion is predicted from, of all runs.
   const std::array<double, 4>& range() const { return range_; }
   /// What the poses show of the body's rates, of all runs.
@@ -170,18 +162,28 @@ class SegmentStream {
     a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
       self.learned_last_);
     a(self.chords_, self.position_last_, self.gyro_, self.heading_, self.others_, self.turned_until_, self.turned_,
-      self.attitudes_, self.evidence_, self.forces_);
+      self.attitudes_, self.evidence_, self.forces_, self.steepest_);
   }
 
  private:
+  bool take(const CommandSample& command);
+  bool take(const WheelSample& wheels);
+  /// By REP-103 nose down is positive pitch.
+  bool take(const Tilt& measured);
+  /// Beside attitudes it is rejected.
+  bool take(const KnownForce& force);
+  /// Turns between positions are taken from a gyro; poses tell theirs themselves.
+  bool take(const YawRate& rate);
+  /// No segment lies between a pose and what is a position alone.
+  bool take(const MeasuredPose& pose);
   bool arrives(Stream stream, double t, std::span<const double> numbers);
-  void push_input(Stream stream, const InputSample& sample);
+  bool take_input(Stream stream, const InputSample& sample);
   void advance(double until);
   void process_wheels(double until);
   void process_pose(const MeasuredPose& raw);
   void turn_on(const YawRate& sample);
-  bool push_first(const MeasuredPose& pose, bool learned);
-  bool push_other(MeasuredPose pose, bool learned);
+  bool take_first(const MeasuredPose& pose);
+  bool take_other(MeasuredPose pose);
   void begin_others();
   void finish_others();
   void advance_others(double until);
@@ -222,6 +224,7 @@ class SegmentStream {
   bool wheels_ever_ = false;
   std::array<double, 4> range_;
   AttitudeGate attitudes_;
+  double steepest_ = 0.0;
   BodyRates rates_;
   HoldTimes held_;
   TiltBuffer tilts_;
