@@ -11,6 +11,7 @@ from slipwise.lazy_names import lazy_names
 if TYPE_CHECKING:
     from slipwise.api import Calibration, calibrate, compare, evaluate, predict
     from slipwise.calibration import Settings, load_settings, make_settings
+    from slipwise.calibration.coming import Coming
     from slipwise.calibration.motion_learner import MotionLearner
     from slipwise.errors import SlipwiseError
     from slipwise.evaluation import Evaluation, EvaluationOptions
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Calibration",
+    "Coming",
     "Evaluation",
     "EvaluationOptions",
     "ExportOptions",
@@ -53,6 +55,7 @@ __all__ = [
 _HOMES = {
     "slipwise.api": ("Calibration", "calibrate", "compare", "evaluate", "predict"),
     "slipwise.calibration": ("Settings", "load_settings", "make_settings"),
+    "slipwise.calibration.coming": ("Coming",),
     "slipwise.calibration.motion_learner": ("MotionLearner",),
     "slipwise.errors": ("SlipwiseError",),
     "slipwise.evaluation": ("Evaluation", "EvaluationOptions"),

@@ -6,12 +6,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from slipwise import _core
+from slipwise.calibration.coming import Coming
 from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.source_tables import core_sources
 from slipwise.errors import SettingsError
 from slipwise.logs import LogOptions
 
+NOTHING_PARTICULAR = Coming()
 STRAIGHT_SIDE_SLIP = 0.03  # rad, standard deviation of a side slip that positions do not see
 
 # What other terms would say, curves, drag of cornering and understeer say already.
@@ -19,16 +21,14 @@ _CAR_BASES = ("none", "edd-2")
 _CAR_LAG, _CAR_DELAY = 0.03, 0.05  # s; medians of the rest behind the lags of a car
 
 
-def core_settings(  # noqa: PLR0913 - what comes is said by its sort
+def core_settings(  # noqa: PLR0913 - six things, each of its own sort
     settings: Settings,
     input_name: str,
     horizons: Sequence[float],
     *,
+    coming: Coming = NOTHING_PARTICULAR,
     remember: bool = False,
-    positions: bool = False,
     car: _core.CarPrior | None = None,
-    sources: Sequence[str] = (),
-    gyro_alone: bool = False,
     wheelbase: float | None = None,
 ) -> _core.LearnerSettings:
     """Return the core's settings.
@@ -37,11 +37,9 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         settings: what to learn and how.
         input_name: "command" or "wheel".
         horizons: of the predictions that are held against what was measured [s].
+        coming: what will be measured. Courses of positions do not tell a side slip that is always the same.
         remember: keep surfaces that were driven on, and recall them.
-        positions: headings are courses of positions, which do not tell a side slip that is always the same.
         car: what is taken of a car whose commands are throttle and steering, before it drives.
-        sources: names of the sources of poses, where sources or fixes are distinguished; the first's first.
-        gyro_alone: no poses come, and turns of a gyro alone are learned from.
         wheelbase: of a robot that is commanded to steer [m]: lags act on its steering.
 
     Raises:
@@ -54,9 +52,9 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         settings.segment_length(input_name), from_commands=from_commands
     )
     stream.whole_frames, stream.horizons = True, list(horizons)
-    stream.heading_only = gyro_alone
-    if sources:
-        stream.sources = core_sources(sources, settings.pose_sources, settings.prior.clock_offset_std)
+    stream.heading_only = coming.gyro_alone
+    if coming.sources:
+        stream.sources = core_sources(coming.sources, settings.pose_sources, settings.prior.clock_offset_std)
     hypotheses.bases = [settings.body_force.added_to(basis) for basis in settings.bases()]
     hypotheses.dynamics = from_commands
     hypotheses.wheelbase = wheelbase or 0.0 if from_commands else 0.0
@@ -68,7 +66,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
     hypotheses.cascaded, hypotheses.direct = "cascaded" in tried, "direct" in tried
     hypotheses.baseline = "baseline" in tried
     hypotheses.filter, average = settings.filter_settings(), settings.average_settings()
-    if positions:
+    if coming.positions:
         _change_prior(hypotheses, straight_side_slip_std=STRAIGHT_SIDE_SLIP)
     if remember and settings.body_force.learned:
         raise SettingsError(
@@ -81,7 +79,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         average.surfaces = surfaces
     hypotheses.average = average
     if car is not None and from_commands:
-        if gyro_alone:
+        if coming.gyro_alone:
             raise SettingsError(
                 "throttle and steering cannot be learned from yaw rates alone, which do not show the speed",
                 advice="record poses or positions too, or measured speeds: --input wheel",

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.coming import coming_of_runs
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.learner import LIMITS, STRUCTURES, Posterior, Progress, posterior_of
 from slipwise.calibration.measured_body import measured_body
@@ -19,8 +20,7 @@ from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_course import course_of
-from slipwise.logs.gyro import gyro_alone
-from slipwise.logs.log import Run, has_course
+from slipwise.logs.log import Run
 from slipwise.models.schema import MeasuredBody
 from slipwise.segments import car_prior, recording_of, source_names, wheelbase_of
 
@@ -104,11 +104,9 @@ def new_learner(
         settings,
         input_name,
         horizons,
+        coming=coming_of_runs(runs),
         remember=remember,
-        positions=has_course(runs),
         car=car_prior(runs),
-        sources=source_names(runs),
-        gyro_alone=gyro_alone(runs),
         wheelbase=None if car_prior(runs) is not None else wheelbase_of(runs),
     )
     return _core.MotionLearner(core)

@@ -77,7 +77,7 @@ class LiveTable(_Table):
     memory: bool = False  # remember surfaces, and begin with those of the start model
     surface: Annotated[str, Field(min_length=1, max_length=80)] | None = None  # name of the first surface
     cache: str | None = None  # folder
-    # What arrives says these (`live.coming`):
+    # What arrives says these (`calibration.coming`):
     gyro_alone: bool = False  # no poses come, and turns of a gyro are learned from
     sources: list[str] = []  # of poses, where there are several: the first first; fixes need one at least
     vehicle: str | None = None  # a car that is commanded by throttle and steering, as --vehicle says

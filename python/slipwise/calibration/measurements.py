@@ -141,7 +141,7 @@ class Measurements:
         """
         number = self._source(source, fix)
         if not self._positions and number[0] == 0:
-            raise SettingsError("this learner expects poses", advice="make it with positions=True")
+            raise SettingsError("this learner expects poses", advice="make it with Coming(positions=True)")
         self._core.push_position(t, x, y, frame, std_xy or 0.0, learned, *number)
 
     def push_gyro(self, t: float, rate: float) -> None:
@@ -172,10 +172,12 @@ class Measurements:
             LogError: there is no such fix.
         """
         if fix and not self._sources:
-            raise SettingsError("this learner tells no fixes apart", advice="make it with sources=[...]")
+            raise SettingsError(
+                "this learner tells no fixes apart", advice="make it with Coming(sources=...)"
+            )
         try:
             number = self._sources[name] if name else 0
         except KeyError:
-            known = ", ".join(self._sources) or "none: make it with sources=[...]"
+            known = ", ".join(self._sources) or "none: make it with Coming(sources=...)"
             raise SettingsError(f"unknown source of poses '{name}'", advice=f"known are {known}") from None
         return number, fix_number(fix)

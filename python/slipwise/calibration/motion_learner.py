@@ -10,7 +10,8 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
-from slipwise.calibration.core_settings import car_of, core_settings, wheelbase_of
+from slipwise.calibration.coming import Coming
+from slipwise.calibration.core_settings import NOTHING_PARTICULAR, car_of, core_settings, wheelbase_of
 from slipwise.calibration.judge import Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned import Learned
@@ -39,7 +40,7 @@ from slipwise.models import Model, parse_model
 from slipwise.models.schema import ModelFile, Range
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
 _LENGTH_BYTES = 8  # of what stands before the core's bytes
 
@@ -51,16 +52,13 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
     and said by `events`; no push raises for what was measured.
     """
 
-    def __init__(  # noqa: PLR0913 (what will come is said by its sort)
+    def __init__(  # noqa: PLR0913 - what it learns from, how, and of which robot
         self,
         input: str = "command",
         settings: Settings | None = None,
         *,
+        coming: Coming = NOTHING_PARTICULAR,
         remember: bool = False,
-        positions: bool = False,
-        attitude: bool = False,
-        sources: Sequence[str] = (),
-        gyro_alone: bool = False,
         wheelbase: float | None = None,
     ) -> None:
         """Start with nothing learned.
@@ -68,13 +66,8 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         Args:
             input: "command" or "wheel": what motion is predicted from.
             settings: what to learn and how.
+            coming: what will be measured, where it is not poses of one source on level ground.
             remember: keep the surfaces that are driven on, and recall them where they come back.
-            positions: positions will come (`push_position`), and no poses.
-            attitude: roll and pitch will be pushed: `auto` tries terms of gravity too, as `calibrate` does of
-                a log that has them. Learning takes about half as long again.
-            sources: names of the sources of poses, if there are several or fixes differ. The first
-                is the one that predictions start from and are judged by; one may be enough.
-            gyro_alone: no poses will come: turns of a gyro (`push_gyro`) are all that is learned from.
             wheelbase: of a robot that is commanded to steer [m]: delay and lag act on its steering. By
                 default that of the vehicle in the settings.
 
@@ -82,6 +75,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             SettingsError: there is no such input, basis or term, two sources have one name, or the
                 estimator is another than the average.
         """
+        sources = coming.sources
         if len(set(sources)) < len(sources):
             raise SettingsError(f"two sources have one name: {', '.join(sources)}", advice="name each apart")
         if input not in ("command", "wheel"):
@@ -92,24 +86,25 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
                 f"the estimator {settings.estimator!r} learns whole logs alone",
                 advice=f"leave out estimator: {AVERAGE!r} learns from one measurement at a time",
             )
-        self._input, self._settings = input, for_ground(settings, slopes=attitude, sideways=False)
+        self._input, self._settings = (
+            input,
+            for_ground(settings, slopes=coming.attitude, sideways=coming.sideways),
+        )
         self._wheelbase = wheelbase_of(self._settings) if wheelbase is None else wheelbase
         self._core = _core.MotionLearner(
             core_settings(
                 self._settings,
                 input,
                 JUDGING_HORIZONS,
+                coming=coming,
                 remember=remember,
-                positions=positions,
                 car=car_of(self._settings),
-                sources=sources,
-                gyro_alone=gyro_alone,
                 wheelbase=self._wheelbase,
             )
         )
-        self._gyro_alone = gyro_alone
+        self._gyro_alone = coming.gyro_alone
         self._sources = {name: number for number, name in enumerate(sources)}
-        self._positions = positions
+        self._positions = coming.positions
         self._runs: list[str] = []
         self._wheels = False
         self._wheel_step = WheelStep()
@@ -350,10 +345,12 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             learner = cls(
                 facts["input"],
                 settings,
+                coming=Coming(
+                    positions=bool(facts["positions"]),
+                    gyro_alone=bool(facts.get("gyro_alone")),
+                    sources=tuple(str(name) for name in facts.get("sources", [])),
+                ),  # whose terms the settings hold already
                 remember=bool(facts.get("remember")),
-                positions=bool(facts["positions"]),
-                sources=[str(name) for name in facts.get("sources", [])],
-                gyro_alone=bool(facts.get("gyro_alone")),
                 wheelbase=facts.get("wheelbase"),
             )
             if learner._core.save() != begun:

@@ -16,9 +16,9 @@ from slipwise.errors import SettingsError
 
 if TYPE_CHECKING:
     from slipwise.calibration import Settings
+    from slipwise.calibration.coming import Coming
     from slipwise.calibration.live_table import LiveTable
     from slipwise.live.build import Built
-    from slipwise.live.coming import Coming
     from slipwise.live.transport import Transport
     from slipwise.live.watch.watcher import Watcher
     from slipwise.logs import Log, LogOptions
@@ -129,8 +129,8 @@ def open_robot(
 
 
 def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) -> Robot:
+    from slipwise.calibration.coming import coming_of
     from slipwise.calibration.prepared_run import choose_input
-    from slipwise.live.coming import coming_of
     from slipwise.live.replay import Replay
     from slipwise.logs import open_log
 
@@ -161,7 +161,7 @@ def _of_lines(table: LiveTable, options: LogOptions, source: Source, say: Callab
 
 
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
-    from slipwise.live.coming import Coming
+    from slipwise.calibration.coming import Coming
     from slipwise.live.ros_roles import (
         find_roles,
         first_poses,

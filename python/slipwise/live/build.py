@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from slipwise.calibration import Settings
+from slipwise.calibration.coming import Coming
 from slipwise.calibration.core_settings import wheelbase_of
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.sloping_ground import for_ground
@@ -114,10 +115,10 @@ def _new_learner(input_name: str, settings: Settings, before: Model | None, *, w
     learner = MotionLearner(
         input_name,
         settings,
+        coming=Coming(
+            positions=live.positions, gyro_alone=live.gyro_alone, sources=tuple(live.sources)
+        ),  # whose terms the settings hold already
         remember=live.memory,
-        positions=live.positions,
-        sources=live.sources,
-        gyro_alone=live.gyro_alone,
         wheelbase=wheelbase_of(settings),
     )
     if before is not None:

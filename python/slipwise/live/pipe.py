@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import IO
 
 from slipwise.errors import LogError
-from slipwise.live.coming import Coming, ComingSoon
+from slipwise.live.coming import ComingLines, ComingSoon
 from slipwise.live.lines import MOST_BYTES, LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.result_lines import ResultLines, Writable
@@ -42,7 +42,7 @@ class Pipe:
         self._done, self._stopped = threading.Event(), threading.Event()
         self._failure: Exception | None = None
 
-    def look(self) -> Coming:
+    def look(self) -> ComingLines:
         """Wait for the first samples, and return what will come; `subscribe` delivers them all the same."""
         soon = ComingSoon()
         for sample in self._samples:

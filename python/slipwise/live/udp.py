@@ -10,7 +10,7 @@ import threading
 import time
 
 from slipwise.errors import SettingsError
-from slipwise.live.coming import Coming, ComingSoon
+from slipwise.live.coming import ComingLines, ComingSoon
 from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.pipe import samples_in
@@ -67,7 +67,7 @@ class Udp:
         """The port that is listened on."""
         return int(self._socket.getsockname()[1])
 
-    def look(self, longest: float = math.inf) -> Coming:
+    def look(self, longest: float = math.inf) -> ComingLines:
         """Wait for the first samples, and return what will come; `subscribe` delivers them all the same.
 
         Args:

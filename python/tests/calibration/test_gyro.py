@@ -10,6 +10,7 @@ import pytest
 from sample_positions import ANTENNA, BASIS, HORIZONS, SECONDS, SETTINGS, SLIP, commands
 
 from slipwise import _core
+from slipwise.calibration.coming import Coming
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.logs import Log, Run
@@ -38,7 +39,7 @@ def run_with_gyro(seed: int, *, noise: float = 0.01, scale: float = 1.0) -> Run:
 
 
 def learned(run: Run) -> _core.MotionLearner:
-    learner = _core.MotionLearner(core_settings(SETTINGS, "wheel", HORIZONS, positions=True))
+    learner = _core.MotionLearner(core_settings(SETTINGS, "wheel", HORIZONS, coming=Coming(positions=True)))
     learner.push(recording_of(run))
     learner.end_run()
     return learner
@@ -47,7 +48,7 @@ def learned(run: Run) -> _core.MotionLearner:
 def test_a_gyro_that_is_learned_from_and_turns_otherwise_makes_no_good_model() -> None:
     for scale, kinds in ((1.0, []), (57.3, ["gyro-turns-otherwise"]), (-1.0, ["gyro-turns-otherwise"])):
         run = run_with_gyro(1, scale=scale)
-        learner = MotionLearner("wheel", SETTINGS, positions=True)
+        learner = MotionLearner("wheel", SETTINGS, coming=Coming(positions=True))
         learner.start_run("live")
         assert run.wheels is not None
         rows = [(t, 0, i) for i, t in enumerate(run.wheels.t)]

@@ -11,6 +11,7 @@ from sample_positions import BASIS, HORIZONS, SECONDS, SLIP, commands
 
 import slipwise as sw
 from slipwise import _core
+from slipwise.calibration.coming import Coming
 from slipwise.calibration.core_settings import core_settings
 from slipwise.logs import Log, Run
 from slipwise.logs.log import empty_poses
@@ -46,7 +47,7 @@ def turning_run(seed: int, *, noise: float = 0.005) -> Run:
 
 
 def learned(run: Run) -> _core.MotionLearner:
-    learner = _core.MotionLearner(core_settings(SETTINGS, "wheel", HORIZONS, gyro_alone=True))
+    learner = _core.MotionLearner(core_settings(SETTINGS, "wheel", HORIZONS, coming=Coming(gyro_alone=True)))
     learner.start_run()
     learner.push(recording_of(run))
     learner.end_run()

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sample_positions import ANTENNA, BASIS, HORIZONS, SECONDS, SETTINGS, SLIP, commands
 
 from slipwise.calibration import Settings, calibrate
+from slipwise.calibration.coming import Coming
 from slipwise.calibration.core_settings import STRAIGHT_SIDE_SLIP, core_settings
 from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.motion_learner import MotionLearner
@@ -79,7 +80,7 @@ def test_a_learner_of_poses_refuses_positions() -> None:
 def test_without_positions_no_prior_changes() -> None:
     plain = core_settings(Settings(), "wheel", HORIZONS)
     assert plain.hypotheses.filter.prior.straight_side_slip_std is None
-    with_positions = core_settings(Settings(), "wheel", HORIZONS, positions=True)
+    with_positions = core_settings(Settings(), "wheel", HORIZONS, coming=Coming(positions=True))
     assert with_positions.hypotheses.filter.prior.straight_side_slip_std == STRAIGHT_SIDE_SLIP
 
 

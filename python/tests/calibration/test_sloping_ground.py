@@ -11,6 +11,7 @@ from sample_logs import Drive, simulated_log
 from sample_slopes import Hills, hilly_log
 
 from slipwise.calibration import calibrate
+from slipwise.calibration.coming import Coming
 from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.settings import Settings, make_settings
@@ -89,11 +90,12 @@ def test_no_prediction_depends_on_an_attitude_that_is_measured_after_its_start()
 
 
 def test_a_learner_tries_terms_of_gravity_where_an_attitude_is_announced() -> None:
-    plain, remembering = MotionLearner("command"), MotionLearner("command", remember=True, attitude=True)
+    tilted = Coming(attitude=True)
+    plain, remembering = MotionLearner("command"), MotionLearner("command", remember=True, coming=tilted)
     assert plain.settings == Settings()
     assert set(SLOPE_BASES) < set(remembering.settings.auto.bases)
     chosen = Settings().choosing("edd-2", None)
-    assert MotionLearner("command", chosen, attitude=True).settings == chosen
+    assert MotionLearner("command", chosen, coming=tilted).settings == chosen
 
 
 def test_terms_of_sideways_speed_are_tried_where_the_vehicle_drives_so() -> None:

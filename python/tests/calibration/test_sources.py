@@ -25,7 +25,7 @@ POOR = Source(std=(0.1, 0.02), late=0.2, every=2)
 
 def learned(run: Run, settings: sw.Settings = SETTINGS) -> _core.MotionLearner:
     names = source_names([run])
-    learner = _core.MotionLearner(core_settings(settings, "wheel", HORIZONS, sources=names))
+    learner = _core.MotionLearner(core_settings(settings, "wheel", HORIZONS, coming=sw.Coming(sources=names)))
     learner.start_run()
     learner.push(recording_of(run, sources=names))
     learner.end_run()
@@ -79,7 +79,7 @@ def test_the_place_of_a_source_is_learned_where_it_is_asked_for() -> None:
     assert found.late == pytest.approx(placed.late, abs=0.03)
     assert "other" in found.sentence()
     with pytest.raises(SettingsError, match="'other', which is the first source"):
-        core_settings(settings, "wheel", HORIZONS, sources=("other", "lidar"))
+        core_settings(settings, "wheel", HORIZONS, coming=sw.Coming(sources=("other", "lidar")))
 
 
 def with_fixes(poses: Poses, fix: np.ndarray) -> Poses:
@@ -130,7 +130,7 @@ def test_one_source_of_one_fix_is_learned_as_ever() -> None:
 
 
 def test_a_learner_takes_sources_by_name() -> None:
-    learner = sw.MotionLearner("wheel", SETTINGS, sources=["lidar", "gnss"])
+    learner = sw.MotionLearner("wheel", SETTINGS, coming=sw.Coming(sources=("lidar", "gnss")))
     learner.start_run("field")
     for k in range(300):
         t = 0.1 * k
@@ -153,4 +153,4 @@ def test_a_learner_takes_sources_by_name() -> None:
     with pytest.raises(SettingsError, match="tells no fixes apart"):
         sw.MotionLearner("wheel").push_pose(0.0, 0.0, 0.0, 0.0, fix="single")
     with pytest.raises(SettingsError, match="two sources have one name"):
-        sw.MotionLearner("wheel", sources=["a", "a"])
+        sw.MotionLearner("wheel", coming=sw.Coming(sources=("a", "a")))

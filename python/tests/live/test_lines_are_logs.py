@@ -10,10 +10,11 @@ from pathlib import Path
 from sample_kinds import Kind, kinds
 
 from slipwise.calibration import Settings, make_settings
+from slipwise.calibration.coming import Coming, coming_of
 from slipwise.calibration.settings import merged
 from slipwise.errors import SlipwiseError
 from slipwise.live.build import Built, build_node
-from slipwise.live.coming import Coming, coming_of
+from slipwise.live.coming import ComingLines
 from slipwise.live.pipe import Pipe
 from slipwise.live.replay import Replay
 from slipwise.live.transport import Transport
@@ -46,7 +47,7 @@ def difference(kind: Kind, folder: Path) -> str:
     pipe = Pipe(io.BytesIO(kind.text().encode()), options=options)
     try:
         log, coming = open_log(path, options=options), pipe.look()
-        if replace(coming, input_name="wheel") != coming_of(log):
+        if replace(coming, input_name="wheel") != ComingLines(**vars(coming_of(log))):
             return f"lines show {coming}, their table {coming_of(log)}"
         wanted = taught(learned(Replay(log, kind.input, rate=0.0), coming, kind, options))
         built = learned(pipe, coming, kind, options)

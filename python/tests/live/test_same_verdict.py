@@ -10,10 +10,10 @@ from contradictory_logs import sound_log, stopped, turned
 
 import slipwise as sw
 from slipwise.calibration import make_settings
+from slipwise.calibration.coming import coming_of
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import LogError, SlipwiseError
 from slipwise.live.build import build_node
-from slipwise.live.coming import coming_of
 from slipwise.live.replay import Replay
 from slipwise.logs import Log, LogOptions, open_log
 

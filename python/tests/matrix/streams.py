@@ -18,15 +18,12 @@ from matrix.learned import Learned, verb
 from matrix.simulator import Floats, Robot, held_commands, in_space, seen_from_start
 
 import slipwise as sw
+from slipwise.calibration.coming import coming_of
 from slipwise.calibration.prepared_run import prepare_run
-from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.live.replay import samples_of
 from slipwise.live.samples import Command, Gyro, KnownForce, Pose, Sample, Wheels
 from slipwise.logs import Log
-from slipwise.logs.gyro import gyro_alone
-from slipwise.logs.log import has_course
 from slipwise.models import Model, load_model
-from slipwise.segments import source_names
 
 
 def same(model: Model, other: Model, within: float) -> None:
@@ -137,10 +134,8 @@ def learner_for(learned: Learned, log: Log) -> sw.MotionLearner:
     """Return a learner that is told what will come."""
     return sw.MotionLearner(
         learned.situation.learns,
-        for_the_ground_of(log, learned.chosen),
-        positions=has_course(log.runs),
-        sources=source_names(log.runs),
-        gyro_alone=gyro_alone(log.runs),
+        learned.chosen,
+        coming=coming_of(log),
         remember=learned.situation.before is not None,
     )
 
