@@ -39,10 +39,10 @@ int main() {
     }
     if (row.contains("cmd_v") && row.contains("cmd_omega")) {
       command = {row["t"], {row["cmd_v"], 0.0, row["cmd_omega"]}};
-      learner.push_command(command.t, command.twist);
+      learner.push(slipwise::CommandSample{{command.t, command.twist}});
     }
     if (row.contains("x") && row.contains("y") && row.contains("yaw")) {
-      learner.push_pose({row["t"], row["x"], row["y"], row["yaw"]});
+      learner.push(slipwise::MeasuredPose{row["t"], row["x"], row["y"], row["yaw"]});
     }
     for (const slipwise::LearnerEvent& event : learner.events()) {
       if (event.kind == slipwise::LearnerEvent::Kind::TerrainChange) {

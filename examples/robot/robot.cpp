@@ -109,7 +109,7 @@ int main(int count, char** arguments) {
   for (int i = 0; i < cycles && stopped == 0; ++i) {
     const double t = kPeriod * i;  // on a real robot: sleep until the next cycle, then the stamp of now
     if (i % 3 == 0) {
-      learner.push_pose(robot.measure(t));
+      learner.push(robot.measure(t));
     }
     const slipwise::Odometry odometry = learner.odometry().value();  // there is a pose from the first cycle on
     const slipwise::BodyTwist command = command_to(odometry.pose, corner);
@@ -118,7 +118,7 @@ int main(int count, char** arguments) {
       std::printf("%s", motion.stuck ? "stuck! " : "");
       show(learner, odometry, robot.truth());
     }
-    learner.push_command(t, command);
+    learner.push(slipwise::CommandSample{{t, command}});
     robot.drive(command);
   }
   save(learner, state);

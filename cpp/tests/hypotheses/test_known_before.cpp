@@ -102,8 +102,9 @@ TEST_CASE("of two memories, surfaces that cannot be told apart become one") {
   REQUIRE(events.size() == 1);
   CHECK(events[0].event.name == "surface 2");
   CHECK(events[0].event.other == "surface 1 (2)");
-  const double once =
-      first.hypotheses().on_surface(first.surfaces().surfaces()[1], Structure::Joint)->state.estimate.covariance.trace();
+  const double once = first.hypotheses()
+                          .on_surface(first.surfaces().surfaces()[1], Structure::Joint)
+                          ->state.estimate.covariance.trace();
   CHECK(begins.hypotheses().on_surface(surfaces[1], Structure::Joint)->state.estimate.covariance.trace() < once);
 }
 

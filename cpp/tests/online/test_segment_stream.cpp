@@ -19,9 +19,9 @@ SegmentStream straight_drive() {
   stream.start_run();
   for (int i = 0; i < 200; ++i) {
     const double t = 0.05 * i;
-    stream.push_wheels({t, {1.0, 0.0, 0.0}});
+    stream.push(WheelSample{{t, {1.0, 0.0, 0.0}}});
     if (i % 2 == 0) {
-      stream.push_pose({.t = t, .x = t, .y = 0.0, .yaw = 0.0});
+      stream.push(MeasuredPose{.t = t, .x = t, .y = 0.0, .yaw = 0.0});
     }
   }
   return stream;
@@ -52,8 +52,8 @@ TEST_CASE("a drive becomes segments that touch, and a prediction to judge of eve
 
 TEST_CASE("what cannot be used is rejected with its stream and reason, once") {
   SegmentStream stream = straight_drive();
-  stream.push_wheels({9.95, {2.0, 0.0, 0.0}});
-  stream.push_pose({.t = 2.0, .x = 0.0, .y = 0.0, .yaw = 0.0});
+  stream.push(WheelSample{{9.95, {2.0, 0.0, 0.0}}});
+  stream.push(MeasuredPose{.t = 2.0, .x = 0.0, .y = 0.0, .yaw = 0.0});
   const auto rejected = stream.take_rejected();
   REQUIRE(rejected.size() == 2);
   CHECK(rejected[0].stream == Stream::Wheels);

@@ -52,7 +52,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
     and said by `events`; no push raises for what was measured.
     """
 
-    def __init__(  # noqa: PLR0913 - what it learns from, how, and of which robot
+    def __init__(
         self,
         input: str = "command",
         settings: Settings | None = None,
