@@ -9,7 +9,7 @@ from dataclasses import replace
 from matrix import logs
 from matrix.logs import PoseSensor, Sensor
 from matrix.simulator import Axis, Robot
-from matrix.situation import Situation
+from matrix.situation import SECONDS, Situation
 
 DRIVE = (Axis(delay=0.15, lag=0.3), Axis(delay=0.1, lag=0.2))
 LAGS = {"delay_v": 0.15, "time_constant_v": 0.3, "delay_omega": 0.1, "time_constant_omega": 0.2}
@@ -240,6 +240,7 @@ SITUATIONS: tuple[Situation, ...] = (
         SLOPING,
         (TOLD, PoseSensor(space=True)),
         settings=(),
+        seconds=1.5 * SECONDS,  # after 80 s the standard deviation of a prediction is that of the bound
         truth={"lat.abs(V)*gy": 0.05},
         changed=replace(SLOPING, slip={**SLIP, "ang.w": -0.4, "lat.abs(V)*gy": 0.05}),
     ),
