@@ -17,7 +17,7 @@ Found = Mapping[str, PhysicalParameter]
 SAME = 2.0  # standard deviations of a difference; channels closer than that are said to be alike
 ALIKE = 0.1  # or closer than this fraction
 LARGEST_HIDDEN = 0.1  # std of the slow fraction up to which a slow mode may be left unsaid
-_CHANNELS = {"v": "speed", "omega": "yaw-rate"}
+Channels = Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class _Said:
 
 
 def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> list[str]:
-    """Say how late speed and yaw rate are, together where these are alike, and how much of a step arrives."""
+    """Say how late each axis is, together where they are alike, and how much of a step arrives."""
     if model.content.input != "command":
         return []
     found = {p.name: p for p in parameters}
@@ -54,9 +54,10 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
         return _car_sentences(model, found)
     if not any(name.startswith(("time_constant_", "delay_")) for name in found):
         return ["Follows commands at once."]
-    responses = dict(zip(_CHANNELS, step_responses(model), strict=True))
-    said = {place: _said(found, place, responses[place]) for place in _CHANNELS}
-    return [*_follows(said), *_arrives(found, responses)]
+    channels = {"v": "speed", "omega": "yaw-rate" if model.content.wheelbase is None else "steering"}
+    responses = dict(zip(channels, step_responses(model), strict=True))
+    said = {place: _said(found, place, responses[place]) for place in channels}
+    return [*_follows(channels, said), *_arrives(channels, found, responses)]
 
 
 def _car_sentences(model: Model, found: Found) -> list[str]:
@@ -82,18 +83,18 @@ def _car_sentences(model: Model, found: Found) -> list[str]:
     return [*sentences, f"Follows {' and '.join(lags)}."] if lags else sentences
 
 
-def _follows(said: Mapping[str, _Said]) -> list[str]:
+def _follows(channels: Channels, said: Mapping[str, _Said]) -> list[str]:
     if _alike(said["v"], said["omega"]):
         return [f"Follows commands {said['v'].words}."]
-    parts = [f"{_CHANNELS[place]} commands {each.words}" for place, each in said.items() if each.words]
+    parts = [f"{channels[place]} commands {each.words}" for place, each in said.items() if each.words]
     return [f"Follows {', and '.join(parts)}."] if parts else []
 
 
-def _arrives(found: Found, responses: Mapping[str, StepResponse]) -> list[str]:
+def _arrives(channels: Channels, found: Found, responses: Mapping[str, StepResponse]) -> list[str]:
     """What has arrived of a step after a while, of channels that may go on with a slow mode after it."""
     parts = [
         f"{estimate_text(100.0 * soon[0], 100.0 * soon[1])} % of the {name} command"
-        for place, name in _CHANNELS.items()
+        for place, name in channels.items()
         if _may_be_slow(found, place) and known(*(soon := responses[place].soon))
     ]
     verb = "has" if len(parts) == 1 else "have"

@@ -70,13 +70,13 @@ def slip_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> l
     """Say how much of what is commanded the robot does, and how much of that its wheels do."""
     if model.motion.slip_size == 0:
         return ["Slip is not part of this model."]
-    slip, actuator = slip_gains(model), _actuator_gains(parameters)
+    slip, actuator = slip_gains(model), _actuator_gains(model, parameters)
     exact = all(abs(g.value - 1.0) <= AS_COMMANDED and g.std <= AS_COMMANDED for g in actuator.values())
     if model.content.input == "wheel":
         return [_moves(slip.speed, slip.yaw_rate, "its wheels say", _separation(slip.separation))]
     if not exact:
         return [_moves(slip.speed, slip.yaw_rate, "its wheels say"), *_reaches(actuator)]
-    speed, yaw_rate = slip.speed.times(actuator["speed"]), slip.yaw_rate.times(actuator["yaw rate"])
+    speed, yaw_rate = map(Gain.times, (slip.speed, slip.yaw_rate), actuator.values())
     return [_moves(speed, yaw_rate, "is commanded" if model.car is None else "its curves say")]
 
 
@@ -99,10 +99,12 @@ def _separation(multiplier: Gain) -> str:
     return f" (separation multiplier {estimate_text(multiplier.value, multiplier.std)})"
 
 
-def _actuator_gains(parameters: tuple[PhysicalParameter, ...]) -> dict[str, Gain]:
+def _actuator_gains(model: Model, parameters: tuple[PhysicalParameter, ...]) -> dict[str, Gain]:
+    """Return the gain of each axis of commands by its name."""
     found = {p.name: Gain(p.value, p.std) for p in parameters}
     exact = Gain(1.0, 0.0)
-    return {"speed": found.get("gain_v", exact), "yaw rate": found.get("gain_omega", exact)}
+    turn = "yaw rate" if model.content.wheelbase is None else "steering"
+    return {"speed": found.get("gain_v", exact), turn: found.get("gain_omega", exact)}
 
 
 def _reaches(actuator: dict[str, Gain]) -> list[str]:
