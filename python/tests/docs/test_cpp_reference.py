@@ -74,5 +74,5 @@ def test_a_page_names_every_header_and_every_type_with_a_comment(subtests: pytes
 
 def test_the_learner_is_shown_with_what_it_is_given() -> None:
     text = page("online")
-    assert "void push_pose(const MeasuredPose& measured, bool learned = true);" in text
+    assert "void push(const Measurement& measurement);" in text
     assert "/// Nothing more comes of this run: what waits for later measurements is learned." in text

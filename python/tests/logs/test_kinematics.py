@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from slipwise.logs.kinematics import omega_from_curvature, omega_from_steering, twist_from_wheels
+from slipwise.logs.kinematics import omega_from_curvature, twist_from_steering, twist_from_wheels
 
 
 def test_equal_wheels_drive_straight_and_opposite_ones_turn_on_the_spot() -> None:
@@ -27,5 +27,15 @@ def test_a_curvature_turns_backwards_when_the_robot_backs_up() -> None:
 
 def test_a_steered_car_turns_about_the_point_that_its_wheelbase_and_angle_give() -> None:
     steer = np.array([0.3, -0.3, 0.0])
-    omega = omega_from_steering(np.full(3, 4.0), steer, wheelbase=2.5)
+    v, omega = twist_from_steering(np.full(3, 4.0), steer, wheelbase=2.5)
+    np.testing.assert_array_equal(v, 4.0)
     np.testing.assert_allclose(omega, 4.0 * np.tan(steer) / 2.5, atol=1e-15)
+
+
+def test_a_steered_car_that_stands_keeps_how_its_wheels_are_turned() -> None:
+    steer = np.array([0.3, 0.0, np.nan])
+    v, omega = twist_from_steering(np.zeros(3), steer, wheelbase=2.5)
+    assert 0.0 < v[0] < 1e-8
+    assert omega[0] / v[0] == pytest.approx(np.tan(0.3) / 2.5)
+    assert (v[1], omega[1]) == (0.0, 0.0)
+    assert not np.isfinite(omega[2])
