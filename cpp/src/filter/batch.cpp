@@ -12,6 +12,7 @@
 
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/present.hpp"
+#include "slipwise/segment/carried_linearization.hpp"
 
 namespace slipwise {
 namespace {

@@ -12,6 +12,7 @@
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/linear/tuning.hpp"
+#include "slipwise/segment/carried_linearization.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {

@@ -10,7 +10,6 @@
 
 #include "slipwise/linear/present.hpp"
 #include "slipwise/linear/same_stamp.hpp"
-#include "slipwise/linear/tuning.hpp"
 #include "slipwise/segment/ground_step.hpp"
 #include "slipwise/segment/growing_path.hpp"
 #include "slipwise/segment/path_step.hpp"
@@ -19,10 +18,7 @@
 namespace slipwise {
 namespace {
 
-constexpr Eigen::Index kDelay = 2;  // the places of delays among the parameters of an actuator are two from here
-constexpr Eigen::Index kClockOffset = 4;
-SLIPWISE_TUNING(kStraight, 0.1);        // of the noise's standard deviation: as good as straight
-SLIPWISE_TUNING(kStraightShift, 0.05);  // [ln s], [s]; over so little of a delay it bends by 1 mm at 1 m/s^2
+constexpr Eigen::Index kClockOffset = 4;  // its place among the parameters of an actuator
 
 /// One column per learned parameter of the actuator.
 using ActuatorColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kActuatorParameters>;
@@ -289,18 +285,6 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
 void see_nothing(const GrowingPath& /*path*/, std::span<const ActuatorStep> /*steps*/,
                  const SensitivitySums& /*sums*/) {}
 
-/// Whether commands or poses come so much later or earlier that it shows in the second order alone.
-bool shifted(const MotionModel& model, const Eigen::ArrayXd& drive) {
-  const auto& places = model.actuator_places();
-  for (Eigen::Index i = 0; i < drive.size(); ++i) {
-    const auto place = places[static_cast<std::size_t>(i)];
-    if (place >= kDelay && place <= kClockOffset && !(drive[i] < kStraightShift)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 }  // namespace
 
 CoursePositions SegmentPath::course_positions() const {
@@ -365,27 +349,6 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                        const InputHistory& inputs, const Segment& segment) {
   return linearized<true>(model, parameters, inputs, segment, see_nothing);
-}
-
-std::optional<SegmentLinearization> carried(const SegmentLinearization& at, const MotionModel& model,
-                                            const Eigen::Ref<const Eigen::VectorXd>& step,
-                                            const Eigen::Matrix3d& noise) {
-  const auto drive = step.segment(model.slip_size(), model.actuator_size()).array().abs().eval();
-  const auto by_drive = at.by_parameter.middleCols(model.slip_size(), model.actuator_size());
-  const Eigen::Vector3d moved = at.by_parameter * step;
-  const double turn = std::abs(moved.z()) + (model.learned().sensor_extrinsics ? std::abs(step[step.size() - 1]) : 0.0);
-  double reach = std::hypot(at.path.sensor.x, at.path.sensor.y);
-  for (const Eigen::Vector3d& tangent : at.path.tangents) {
-    reach += tangent.head<2>().norm();
-  }
-  Eigen::Vector3d bent = 0.5 * by_drive.cwiseAbs() * drive.square().matrix();
-  bent.head<2>().array() += turn * (0.5 * reach * turn + moved.head<2>().norm());
-  if (!(bent.array() < kStraight * noise.diagonal().array().sqrt()).all() || shifted(model, drive)) {
-    return std::nullopt;
-  }
-  SegmentLinearization there = at;
-  there.predicted = {at.predicted.x + moved.x(), at.predicted.y + moved.y(), at.predicted.theta + moved.z()};
-  return there;
 }
 
 SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,

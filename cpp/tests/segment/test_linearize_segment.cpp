@@ -11,6 +11,7 @@
 #include "finite_difference.hpp"
 #include "sample_bases.hpp"
 #include "sample_drives.hpp"
+#include "slipwise/segment/carried_linearization.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/slip/force_terms.hpp"
 

@@ -60,12 +60,6 @@ struct SegmentLinearization {
 /// Value and exact derivative in one pass (prefix scan of derivations/model.md).
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                        const InputHistory& inputs, const Segment& segment);
-/// Carries `at` over a step of the parameters along which the segment is as good as straight: its prediction moves by
-/// the derivative, which stays, and so does the path, whose noise hardly changes. Nothing where it bends by more than a
-/// tenth of the standard deviations of the `noise` of what measures it.
-std::optional<SegmentLinearization> carried(const SegmentLinearization& at, const MotionModel& model,
-                                            const Eigen::Ref<const Eigen::VectorXd>& step,
-                                            const Eigen::Matrix3d& noise);
 /// The same by the slip parameters alone, which come first: cheaper where the actuator is learned too.
 SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                     const InputHistory& inputs, const Segment& segment);
