@@ -89,7 +89,7 @@ def silence_stdout() -> None:
 
 def _usage_line(error: BaseException) -> str:
     """Return what typer says, and where help is."""
-    message = error.format_message().rstrip(".")  # type: ignore[attr-defined]
+    message = error.format_message().rstrip(".").replace("Value error, ", "")  # type: ignore[attr-defined]
     context = error.ctx  # type: ignore[attr-defined]
     command = context.command_path if context is not None else "slipwise"
     return f"{message}: see `{command} --help`"

@@ -83,7 +83,10 @@ def test_wrong_use_is_said_in_one_line(
         (["frobnicate"], "No such command 'frobnicate'"),
         (["calibrate"], "Missing argument 'LOG...'"),
         (["calibrate", "drive.csv", "--inptu", "wheel"], "No such option: --inptu"),
-        (["calibrate", "drive.csv", "--input", "thrust"], "'thrust' is not one of"),
+        (
+            ["calibrate", "drive.csv", "--input", "thrust"],
+            "Invalid value for '--input': 'thrust' is not one of",
+        ),
         (["calibrate", "drive.csv", "--wheel-separation", "wide"], "--wheel-separation"),
         (
             ["calibrate", "drive.csv", "--wheel-separation", "-1"],
