@@ -84,19 +84,6 @@ SLIPWISE_LANES void read_car_commands(const LaneCarJob<Scalar>& job, const LaneC
   load(gathered, command);
 }
 
-template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void write_car_twists(const LaneCarBlock<Scalar>& block, const typename L::Vector& twist, Scalar* to) {
-  if (block.count == L::kLanes) {
-    store(twist, to);
-    return;
-  }
-  alignas(64) Scalar values[L::kLanes];
-  store(twist, values);
-  for (std::size_t i = 0; i < block.count; ++i) {
-    to[i] = values[i];
-  }
-}
-
 /// Drives the cars of a block through all periods. A command that is not finite makes the twists so, too.
 template <class Level, typename Scalar>
 void drive_cars(const LaneCarJob<Scalar>& job, const LaneCarBlock<Scalar>& block) {
@@ -125,8 +112,8 @@ void drive_cars(const LaneCarJob<Scalar>& job, const LaneCarBlock<Scalar>& block
       copy(next.steering, now.steering);
     }
     const std::size_t at = period * job.rollouts + block.first;
-    write_car_twists<L>(block, v, job.v + at);
-    write_car_twists<L>(block, omega, job.omega + at);
+    store_first(v, block.count, job.v + at);
+    store_first(omega, block.count, job.omega + at);
   }
 }
 

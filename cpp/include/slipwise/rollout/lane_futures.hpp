@@ -103,9 +103,7 @@ class NoisyRide : public OutputLanes<L> {
     normal_.next_two(normal[0], normal[1]);
     normal_.next_two(normal[2], normal[3]);
     for (std::size_t c = 0; c < 3; ++c) {
-      const Vector variance =
-          motion.moving * plan_.noise.psd_time[c] + motion.per_channel[c] * plan_.noise.psd_motion[c];
-      white[c] = root_of<Scalar>(variance * fresh) * normal[c];
+      white[c] = root_of<Scalar>(white_variance<L>(plan_.noise, motion, c) * fresh) * normal[c];
       if (in_tail_) {
         tail_[c] = tail_[c] + white[c];
       } else if (owes_) {

@@ -38,6 +38,13 @@ SLIPWISE_LANES void find_motion(const LaneNoise<Scalar>& noise, const MeanLanes<
   motion.moving = wheels > Vector{} ? Vector{} + duration : Vector{};
 }
 
+/// Variance of a part's white noise in a channel.
+template <class L, typename Scalar = L::Scalar>
+SLIPWISE_LANES L::Vector white_variance(const LaneNoise<Scalar>& noise, const MotionLanes<L>& motion,
+                                        std::size_t channel) {
+  return motion.moving * noise.psd_time[channel] + motion.per_channel[channel] * noise.psd_motion[channel];
+}
+
 /// The natural logarithm of numbers above zero, to the digits of float.
 template <class Vector, class Integers>
 SLIPWISE_LANES void logarithm(const Vector& x, Vector& result) {

@@ -79,15 +79,7 @@ class OutputLanes {
     typename L::Vector whole;
     load(start, whole);
     whole = whole + row;
-    if (lanes_in<L>(block_) == L::kLanes) {
-      store(whole, to + at);
-      return;
-    }
-    alignas(64) Scalar values[L::kLanes];
-    store(whole, values);
-    for (std::size_t i = 0; i < lanes_in<L>(block_); ++i) {
-      to[at + i] = values[i];
-    }
+    store_first(whole, lanes_in<L>(block_), to + at);
   }
 
   SLIPWISE_LANES void write_costs(const Scalar* costs, Scalar* to) const {

@@ -46,9 +46,9 @@ class TangentRide {
         }
       }
     }
-    told(robot.v.next, 0);
-    told(robot.omega.next, 1);
-    told(robot.v.next, 2);
+    take_command(robot.v.next, 0);
+    take_command(robot.omega.next, 1);
+    take_command(robot.v.next, 2);
     start_cosine_ = robot.path.cosine;
     start_sine_ = robot.path.sine;
   }
@@ -56,11 +56,11 @@ class TangentRide {
   SLIPWISE_LANES void drive(std::size_t index, Robot& robot) {
     const LanePart<Scalar>& part = job_.parts[index];
     if (part.next_v) {
-      told(robot.v.next, 0);
-      told(robot.v.next, 2);
+      take_command(robot.v.next, 0);
+      take_command(robot.v.next, 2);
     }
     if (part.next_omega) {
-      told(robot.omega.next, 1);
+      take_command(robot.omega.next, 1);
     }
     if (along_ground_ || plan_.actuator > 0) {
       drive_with_seeds(index, robot);
@@ -119,7 +119,7 @@ class TangentRide {
   }
 
   /// A command began to act. What was before all commands keeps the drive as it is, and hangs on its parameters.
-  SLIPWISE_LANES void told(std::ptrdiff_t next, std::size_t channel) {
+  SLIPWISE_LANES void take_command(std::ptrdiff_t next, std::size_t channel) {
     const bool keeps = next - 1 < job_.start_row && block_.past_count == 0;
     for (std::size_t i = 0; i < plan_.actuator; ++i) {
       Vector by{};
@@ -198,11 +198,10 @@ class TangentRide {
   }
 
   /// What a column changes of a part, carried back to the start.
-  SLIPWISE_LANES void add_step(std::size_t column, const Vector& forward, const Vector& left, const Vector& turn,
-                               const StepLanes<Vector>& by) {
-    add(x_row(column), by.x[0] * forward + by.x[1] * left + by.x[2] * turn);
-    add(y_row(column), by.y[0] * forward + by.y[1] * left + by.y[2] * turn);
-    add(turn_row(column), turn);
+  SLIPWISE_LANES void add_step(std::size_t column, const TangentLanes<L>& change, const StepLanes<Vector>& by) {
+    add(x_row(column), by.x[0] * change.forward + by.x[1] * change.left + by.x[2] * change.turn);
+    add(y_row(column), by.y[0] * change.forward + by.y[1] * change.left + by.y[2] * change.turn);
+    add(turn_row(column), change.turn);
   }
 
   /// Adds what a direction changes of a part: `change` along the ground, what `along` says of what was before.
@@ -219,10 +218,7 @@ class TangentRide {
       const Vector direction = sign(part.any.driven.forward.value, Vector{} + static_cast<Scalar>(1));
       put(way_row(column), direction * forward + along(part.travelled));
     }
-    const StepLanes<Vector>& by = part.by;
-    add(x_row(column), by.x[0] * change.forward + by.x[1] * change.left + by.x[2] * change.turn);
-    add(y_row(column), by.y[0] * change.forward + by.y[1] * change.left + by.y[2] * change.turn);
-    add(turn_row(column), change.turn);
+    add_step(column, change, part.by);
   }
 
   SLIPWISE_LANES void add_actuator(std::size_t i, const PartTangent<Scalar>& moved, const Robot& before,
@@ -296,12 +292,11 @@ class TangentRide {
     const std::size_t row = noise_row();
     SymmetricLanes<Vector> sum = white();
     for (std::size_t c = 0; c < 3; ++c) {
-      const Vector variance = motion.moving * noise.psd_time[c] + motion.per_channel[c] * noise.psd_motion[c];
       const Vector constant = motion.per_channel[c] * noise.fraction[c];
       add(row + 6 + 2 * c, by.x[c] * constant);
       add(row + 7 + 2 * c, by.y[c] * constant);
       const Vector turn_by = Vector{} + static_cast<Scalar>(c == 2 ? 1 : 0);
-      add_square(by.x[c], by.y[c], turn_by, variance, sum);
+      add_square(by.x[c], by.y[c], turn_by, white_variance<L>(noise, motion, c), sum);
       add(row + 12, turn_by * constant);
     }
     const Vector sums[6] = {sum.xx, sum.xy, sum.yy, sum.xt, sum.yt, sum.tt};
@@ -363,16 +358,7 @@ class TangentRide {
                                sum.xt + noise.xt, sum.yt + noise.yt, sum.tt + noise.tt};
     Scalar* out = plan_.out + period_ * job_.rollouts + block_.first;
     for (std::size_t e = 0; e < 6; ++e, out += job_.periods / job_.pieces * job_.rollouts) {
-      const Vector grown = entries[e] * plan_.inflation[period_];
-      if (block_.count == L::kLanes) {
-        store(grown, out);
-        continue;
-      }
-      alignas(64) Scalar numbers[L::kLanes];
-      store(grown, numbers);
-      for (std::size_t i = 0; i < block_.count; ++i) {
-        out[i] = numbers[i];
-      }
+      store_first(Vector(entries[e] * plan_.inflation[period_]), block_.count, out);
     }
   }
 

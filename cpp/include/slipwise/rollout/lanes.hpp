@@ -179,6 +179,21 @@ SLIPWISE_LANES Vector root_of(const Vector& squared) {
   return root;
 }
 
+/// Stores the first numbers of a block's lanes, which may be fewer than there are lanes.
+template <typename Scalar, class Vector>
+SLIPWISE_LANES void store_first(const Vector& value, std::size_t count, Scalar* to) {
+  constexpr std::size_t kLanes = sizeof(Vector) / sizeof(Scalar);
+  if (count == kLanes) {
+    store(value, to);
+    return;
+  }
+  alignas(64) Scalar numbers[kLanes];  // NOLINT(modernize-avoid-c-arrays)
+  store(value, numbers);
+  for (std::size_t i = 0; i < count; ++i) {
+    to[i] = numbers[i];
+  }
+}
+
 /// 1, and 0 where both are zero.
 template <class Vector>
 SLIPWISE_LANES Vector any_nonzero(const Vector& a, const Vector& b, const Vector& one) {
