@@ -86,10 +86,8 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
                 f"the estimator {settings.estimator!r} learns whole logs alone",
                 advice=f"leave out estimator: {AVERAGE!r} learns from one measurement at a time",
             )
-        self._input, self._settings = (
-            input,
-            for_ground(settings, slopes=coming.attitude, sideways=coming.sideways),
-        )
+        self._input = input
+        self._settings = for_ground(settings, slopes=coming.attitude, sideways=coming.sideways)
         self._wheelbase = wheelbase_of(self._settings) if wheelbase is None else wheelbase
         self._core = _core.MotionLearner(
             core_settings(
