@@ -78,6 +78,13 @@ std::vector<PeriodPartOf<T>> all_parts(const ActuatorScheduleOf<T>& actuator) {
   return parts;
 }
 
+/// Whether a channel answers otherwise when a parameter of the actuator changes.
+bool hangs_on(const ChannelTimingOf<ActuatorDual>& channel, int place) {
+  const auto& [gain, fast, fraction, slow] = channel.response;
+  return std::ranges::any_of(std::array{&channel.rest, &gain, &fast, &fraction, &slow},
+                             [&](const ActuatorDual* number) { return number->by[place] != 0.0; });
+}
+
 LaneLag<double> derivative_of(const LaneLag<ActuatorDual>& lag, int place) {
   return {lag.mean_by_input.by[place], lag.mean_by_fast.by[place], lag.mean_by_slow.by[place],
           lag.fast_by_input.by[place], lag.fast_by_fast.by[place], lag.slow_by_input.by[place],
@@ -107,7 +114,13 @@ void TangentPlan::add_actuator(const UncertainModel& model) {
       actuator_places_.push_back(static_cast<int>(i));
     }
   }
-  for (const PeriodPartOf<ActuatorDual>& part : all_parts(actuator_)) {
+  const std::vector<PeriodPartOf<ActuatorDual>> parts = all_parts(actuator_);
+  for (const int place : actuator_places_) {
+    const bool cuts = std::ranges::any_of(parts, [&](const auto& part) { return part.duration.by[place] != 0.0; });
+    moved_.push_back((cuts || hangs_on(actuator_.v, place) ? 1U : 0U) |
+                     (cuts || hangs_on(actuator_.omega, place) ? 2U : 0U));
+  }
+  for (const PeriodPartOf<ActuatorDual>& part : parts) {
     const auto v = lane_lag(part.v, actuator_.v.response), omega = lane_lag(part.omega, actuator_.omega.response);
     for (const int place : actuator_places_) {
       parts_.push_back({part.duration.by[place], derivative_of(v, place), derivative_of(omega, place)});
@@ -205,6 +218,7 @@ LaneTangents<double> TangentPlan::lanes() const {
           .entries = entries_.data(),
           .parts = parts_.data(),
           .start = nullptr,
+          .moved = moved_.data(),
           .factor = factor_.data(),
           .disturbed_count = disturbed_.size(),
           .disturbed = disturbed_.data(),

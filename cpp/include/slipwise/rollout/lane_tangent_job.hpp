@@ -46,6 +46,7 @@ struct LaneTangents {
   const TangentEntry<Scalar>* entries;
   const PartTangent<Scalar>* parts;   ///< [parts][actuator]
   const StartTangent<Scalar>* start;  ///< [actuator]
+  const std::uint8_t* moved;  ///< [actuator] whether the answer to speeds, 1, and to yaw rates, 2, changes with it
   /// The columns' covariance is F F^T, F lower triangular: kColumnsTogether of its columns after each other, each from
   /// the row on that is the first of them.
   const Scalar* factor;

@@ -8,47 +8,50 @@
 #include "slipwise/rollout/lane_kernel.hpp"
 #include "slipwise/rollout/lane_noise.hpp"
 #include "slipwise/rollout/lane_step.hpp"
-#include "slipwise/rollout/lane_tangent_job.hpp"
+#include "slipwise/rollout/lane_tangent_rows.hpp"
 
 // Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
 // NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
-/// What the tangent of a part changes by with what was before it.
+/// What the tangent of a part changes by with what was before it; with the first two alone on level ground without
+/// edges, where the robot does not drive sideways.
 enum Seed : std::uint8_t { kMeanV, kMeanOmega, kMeanVy, kHeading, kTravelled, kDuration, kSeeds };
+inline constexpr int kPlainSeeds = 2;
 
-/// Rolls a block with its tangents.
-template <class L>
+/// Rolls a block with its tangents, of which each part has those by the first kBy seeds.
+template <class L, int kBy>
 class TangentRide {
  public:
   using Scalar = L::Scalar;
   using Vector = L::Vector;
   using Robot = RobotLanes<L, Actuator::Response, Slip::Any>;
-  using Differentiable = DualLanes<L, kSeeds>;
+  using Differentiable = DualLanes<L, kBy>;
+  static constexpr auto kOne = static_cast<Scalar>(1);
+  static constexpr bool kPlain = kBy == kPlainSeeds;
+  static constexpr std::size_t kChannels = kPlain ? 2 : 3;  ///< of the drive
 
   SLIPWISE_LANES TangentRide(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block)
       : job_(job),
         block_(block),
         plan_(*job.tangents),
         last_piece_(job.pieces - 1),
-        along_ground_(job.on_grade || job.edge_count > 0) {}
+        along_ground_(!kPlain && (job.on_grade || job.edge_count > 0)),
+        rows_(plan_, kChannels, along_ground_) {}
 
   SLIPWISE_LANES void start(const Robot& robot) {
-    for (std::size_t row = 0; row < tangent_rows(plan_); ++row) {
-      put(row, Vector{});
-    }
+    rows_.clear();
     for (std::size_t i = 0; i < plan_.actuator; ++i) {
-      for (std::size_t channel = 0; channel < 3; ++channel) {
+      for (std::size_t channel = 0; channel < kChannels; ++channel) {
         for (std::size_t held = 1; held < 3; ++held) {
           Vector by;
           load(plan_.start[i].by[channel][held], by);
-          put(drive_row(i, channel) + held, by);
+          rows_.put(rows_.drive_row(i, channel) + held, by);
         }
       }
     }
-    take_command(robot.v.next, 0);
+    take_speed(robot.v.next);
     take_command(robot.omega.next, 1);
-    take_command(robot.v.next, 2);
     start_cosine_ = robot.path.cosine;
     start_sine_ = robot.path.sine;
   }
@@ -56,8 +59,7 @@ class TangentRide {
   SLIPWISE_LANES void drive(std::size_t index, Robot& robot) {
     const LanePart<Scalar>& part = job_.parts[index];
     if (part.next_v) {
-      take_command(robot.v.next, 0);
-      take_command(robot.v.next, 2);
+      take_speed(robot.v.next);
     }
     if (part.next_omega) {
       take_command(robot.omega.next, 1);
@@ -78,9 +80,8 @@ class TangentRide {
     add_columns(part, [&](std::size_t product) -> const Vector& { return products.value[product]; }, by);
   }
 
-  SLIPWISE_LANES void put_aside() { copy_state(0, tangent_rows(plan_)); }
-  SLIPWISE_LANES void take_up() { copy_state(tangent_rows(plan_), 0); }
-
+  SLIPWISE_LANES void put_aside() { rows_.put_aside(); }
+  SLIPWISE_LANES void take_up() { rows_.take_up(); }
   SLIPWISE_LANES bool wants_piece(std::size_t piece) const { return piece == last_piece_; }
   SLIPWISE_LANES void write_piece(const PathLanes<L>& path, std::size_t piece) {
     if (piece == last_piece_) {
@@ -95,29 +96,6 @@ class TangentRide {
 
   SLIPWISE_LANES static Wide variable(const Vector& value, Seed seed) { return Wide::variable(value, seed); }
 
-  // Rows of the state: derivatives of (x, y, heading, way) by each column, of the drive's (input, fast, slow) in each
-  // channel by each parameter of the actuator, and sums of noise.
-  SLIPWISE_LANES std::size_t x_row(std::size_t column) const { return column; }
-  SLIPWISE_LANES std::size_t y_row(std::size_t column) const { return plan_.columns + column; }
-  SLIPWISE_LANES std::size_t turn_row(std::size_t column) const { return 2 * plan_.columns + column; }
-  SLIPWISE_LANES std::size_t way_row(std::size_t column) const { return 3 * plan_.columns + column; }
-  SLIPWISE_LANES std::size_t drive_row(std::size_t i, std::size_t channel) const {
-    return 4 * plan_.columns + 9 * i + 3 * channel;
-  }
-  SLIPWISE_LANES std::size_t noise_row() const { return 4 * plan_.columns + 9 * plan_.actuator; }
-  SLIPWISE_LANES Vector get(std::size_t row) const {
-    Vector value;
-    load(plan_.state + row * L::kLanes, value);
-    return value;
-  }
-  SLIPWISE_LANES void put(std::size_t row, const Vector& value) { store(value, plan_.state + row * L::kLanes); }
-  SLIPWISE_LANES void add(std::size_t row, const Vector& value) { put(row, get(row) + value); }
-  SLIPWISE_LANES void copy_state(std::size_t from, std::size_t to) {
-    for (std::size_t row = 0; row < tangent_rows(plan_); ++row) {
-      put(to + row, get(from + row));
-    }
-  }
-
   /// A command began to act. What was before all commands keeps the drive as it is, and hangs on its parameters.
   SLIPWISE_LANES void take_command(std::ptrdiff_t next, std::size_t channel) {
     const bool keeps = next - 1 < job_.start_row && block_.past_count == 0;
@@ -126,7 +104,13 @@ class TangentRide {
       if (keeps) {
         load(plan_.start[i].by[channel][0], by);
       }
-      put(drive_row(i, channel), by);
+      rows_.put(rows_.drive_row(i, channel), by);
+    }
+  }
+  SLIPWISE_LANES void take_speed(std::ptrdiff_t next) {
+    take_command(next, 0);
+    if constexpr (!kPlain) {
+      take_command(next, 2);
     }
   }
 
@@ -155,13 +139,17 @@ class TangentRide {
     slip_with_seeds(mean, robot, part);
     const TangentLanes<L> tangent{part.tangent.forward.value, part.tangent.left.value, part.tangent.turn.value};
     step_with_tangents<L>(tangent, robot.path, part.by);
-    robot.travelled = part.travelled.value;
+    if constexpr (!kPlain) {
+      robot.travelled = part.travelled.value;
+    }
     add_noise(numbers, mean, part.by);
     for (std::size_t i = 0; i < plan_.actuator; ++i) {
       add_actuator(i, plan_.parts[index * plan_.actuator + i], before, part);
     }
     if (along_ground_) {
-      add_columns_on_ground(part);
+      if constexpr (!kPlain) {
+        add_columns_on_ground(part);
+      }
     } else {
       add_columns(
           numbers, [&](std::size_t product) -> const Vector& { return part.any.products.value[product].value; },
@@ -174,49 +162,59 @@ class TangentRide {
     from.coefficients = job_.coefficients + part.numbers->first_coefficient;
     from.mean.v = variable(mean.v, kMeanV);
     from.mean.omega = variable(mean.omega, kMeanOmega);
-    if (job_.vy != nullptr) {
-      from.mean.vy = variable(mean.vy, kMeanVy);
+    if constexpr (kPlain) {
+      slip_tangent<Differentiable>(job_, {from.coefficients, nullptr, false}, from.mean, part.any.products,
+                                   part.any.driven);
+      part.tangent = part.any.driven;
+    } else {
+      if (job_.vy != nullptr) {
+        from.mean.vy = variable(mean.vy, kMeanVy);
+      }
+      from.duration = variable(Vector{} + part.numbers->duration, kDuration);
+      from.heading = {robot.path.cosine, robot.path.sine};
+      from.heading.cosine.by[kHeading] = -robot.path.sine;
+      from.heading.sine.by[kHeading] = robot.path.cosine;
+      part.travelled = variable(robot.travelled, kTravelled);
+      any_tangent<Differentiable>(job_, from, part.travelled, part.any, part.tangent);
     }
-    from.duration = variable(Vector{} + part.numbers->duration, kDuration);
-    from.heading = {robot.path.cosine, robot.path.sine};
-    from.heading.cosine.by[kHeading] = -robot.path.sine;
-    from.heading.sine.by[kHeading] = robot.path.cosine;
-    part.travelled = variable(robot.travelled, kTravelled);
-    any_tangent<Differentiable>(job_, from, part.travelled, part.any, part.tangent);
   }
 
   /// Moves the drive's derivatives on over a part; returns the one of its mean.
   SLIPWISE_LANES Vector move_channel(std::size_t row, const ChannelLanes<L, Actuator::Response>& before,
                                      const LaneLag<Scalar>& lag, const LaneLag<Scalar>& by) {
-    const Vector input = get(row), fast = get(row + 1), slow = get(row + 2);
-    put(row + 1, input * lag.fast_by_input + fast * lag.fast_by_fast + before.input * by.fast_by_input +
-                     before.fast * by.fast_by_fast);
-    put(row + 2, input * lag.slow_by_input + slow * lag.slow_by_slow + before.input * by.slow_by_input +
-                     before.slow * by.slow_by_slow);
+    const Vector input = rows_.get(row), fast = rows_.get(row + 1), slow = rows_.get(row + 2);
+    rows_.put(row + 1, input * lag.fast_by_input + fast * lag.fast_by_fast + before.input * by.fast_by_input +
+                           before.fast * by.fast_by_fast);
+    rows_.put(row + 2, input * lag.slow_by_input + slow * lag.slow_by_slow + before.input * by.slow_by_input +
+                           before.slow * by.slow_by_slow);
     return input * lag.mean_by_input + fast * lag.mean_by_fast + slow * lag.mean_by_slow +
            before.input * by.mean_by_input + before.fast * by.mean_by_fast + before.slow * by.mean_by_slow;
   }
 
   /// What a column changes of a part, carried back to the start.
   SLIPWISE_LANES void add_step(std::size_t column, const TangentLanes<L>& change, const StepLanes<Vector>& by) {
-    add(x_row(column), by.x[0] * change.forward + by.x[1] * change.left + by.x[2] * change.turn);
-    add(y_row(column), by.y[0] * change.forward + by.y[1] * change.left + by.y[2] * change.turn);
-    add(turn_row(column), change.turn);
+    rows_.add(rows_.x_row(column), by.x[0] * change.forward + by.x[1] * change.left + by.x[2] * change.turn);
+    rows_.add(rows_.y_row(column), by.y[0] * change.forward + by.y[1] * change.left + by.y[2] * change.turn);
+    rows_.add(rows_.turn_row(column), change.turn);
   }
 
   /// Adds what a direction changes of a part: `change` along the ground, what `along` says of what was before.
   template <class Along>
   SLIPWISE_LANES void add_change(std::size_t column, TangentLanes<L> change, const Part& part, const Along& along) {
     const Vector forward = change.forward;
-    if (job_.on_grade) {
-      see_from_above<L>(plain_grade(part.any), change);
+    if constexpr (!kPlain) {
+      if (job_.on_grade) {
+        see_from_above<L>(plain_grade(part.any), change);
+      }
     }
     change.forward = change.forward + along(part.tangent.forward);
     change.left = change.left + along(part.tangent.left);
     change.turn = change.turn + along(part.tangent.turn);
-    if (along_ground_) {
-      const Vector direction = sign(part.any.driven.forward.value, Vector{} + static_cast<Scalar>(1));
-      put(way_row(column), direction * forward + along(part.travelled));
+    if constexpr (!kPlain) {
+      if (along_ground_) {
+        const Vector direction = sign(part.any.driven.forward.value, Vector{} + kOne);
+        rows_.put(rows_.way_row(column), direction * forward + along(part.travelled));
+      }
     }
     add_step(column, change, part.by);
   }
@@ -224,26 +222,36 @@ class TangentRide {
   SLIPWISE_LANES void add_actuator(std::size_t i, const PartTangent<Scalar>& moved, const Robot& before,
                                    const Part& part) {
     const LanePart<Scalar>& numbers = *part.numbers;
-    const Vector v = move_channel(drive_row(i, 0), before.v, numbers.v, moved.v);
-    Vector omega = move_channel(drive_row(i, 1), before.omega, numbers.omega, moved.omega);
+    const bool speeds = (plan_.moved[i] & 1U) != 0;
+    Vector v{}, omega{}, vy{};
+    if (speeds) {
+      v = move_channel(rows_.drive_row(i, 0), before.v, numbers.v, moved.v);
+    }
+    if ((plan_.moved[i] & 2U) != 0) {
+      omega = move_channel(rows_.drive_row(i, 1), before.omega, numbers.omega, moved.omega);
+    }
     if (job_.sharpest > 0) {
       omega = part.speed * omega + part.curvature * v;
     }
-    Vector vy{};
-    if (job_.vy != nullptr) {
-      vy = move_channel(drive_row(i, 2), before.vy, numbers.v, moved.v);
+    if constexpr (!kPlain) {
+      if (speeds && job_.vy != nullptr) {
+        vy = move_channel(rows_.drive_row(i, 2), before.vy, numbers.v, moved.v);
+      }
     }
     const Scalar longer = moved.duration / numbers.duration;  // is driven and slips in proportion
     const TangentLanes<Differentiable>& driven = part.any.driven;
-    const Vector heading = get(turn_row(i)), travel = get(way_row(i));
     add_change(i, {driven.forward.value * longer, driven.left.value * longer, driven.turn.value * longer}, part,
                [&](const Wide& number) {
-                 Vector sum = number.by[kMeanV] * v + number.by[kMeanOmega] * omega + number.by[kMeanVy] * vy;
-                 if (along_ground_) {
-                   sum = sum + number.by[kHeading] * heading + number.by[kTravelled] * travel +
-                         number.by[kDuration] * moved.duration;
+                 const Vector by_means = number.by[kMeanV] * v + number.by[kMeanOmega] * omega;
+                 if constexpr (kPlain) {
+                   return by_means;
+                 } else {
+                   const Vector all = by_means + number.by[kMeanVy] * vy;
+                   return along_ground_ ? all + number.by[kHeading] * rows_.get(rows_.turn_row(i)) +
+                                              number.by[kTravelled] * rows_.get(rows_.way_row(i)) +
+                                              number.by[kDuration] * moved.duration
+                                        : all;
                  }
-                 return sum;
                });
   }
 
@@ -260,10 +268,10 @@ class TangentRide {
       for (std::size_t e = plan_.first_entry[column]; e < plan_.first_entry[column + 1]; ++e) {
         const TangentEntry<Scalar>& entry = plan_.entries[e];
         const Vector change = products(entry.product) * (entry.rate * part.duration);
-        add(x_row(column), by.x[entry.channel] * change);
-        add(y_row(column), by.y[entry.channel] * change);
+        rows_.add(rows_.x_row(column), by.x[entry.channel] * change);
+        rows_.add(rows_.y_row(column), by.y[entry.channel] * change);
         if (entry.channel == 2) {
-          add(turn_row(column), change);
+          rows_.add(rows_.turn_row(column), change);
         }
       }
     }
@@ -279,7 +287,7 @@ class TangentRide {
         }
         changes[entry.channel] = changes[entry.channel] + change;
       }
-      const Vector heading = get(turn_row(column)), travel = get(way_row(column));
+      const Vector heading = rows_.get(rows_.turn_row(column)), travel = rows_.get(rows_.way_row(column));
       add_change(column, {changes[0], changes[1], changes[2]}, part,
                  [&](const Wide& number) { return number.by[kHeading] * heading + number.by[kTravelled] * travel; });
     }
@@ -289,35 +297,36 @@ class TangentRide {
     const LaneNoise<Scalar>& noise = plan_.noise;
     MotionLanes<L> motion;
     find_motion<L>(noise, mean, job_.vy != nullptr, part.duration, motion);
-    const std::size_t row = noise_row();
+    const std::size_t row = rows_.noise_row();
     SymmetricLanes<Vector> sum = white();
     for (std::size_t c = 0; c < 3; ++c) {
       const Vector constant = motion.per_channel[c] * noise.fraction[c];
-      add(row + 6 + 2 * c, by.x[c] * constant);
-      add(row + 7 + 2 * c, by.y[c] * constant);
+      rows_.add(row + 6 + 2 * c, by.x[c] * constant);
+      rows_.add(row + 7 + 2 * c, by.y[c] * constant);
       const Vector turn_by = Vector{} + static_cast<Scalar>(c == 2 ? 1 : 0);
       add_square(by.x[c], by.y[c], turn_by, white_variance<L>(noise, motion, c), sum);
-      add(row + 12, turn_by * constant);
+      rows_.add(row + 12, turn_by * constant);
     }
     const Vector sums[6] = {sum.xx, sum.xy, sum.yy, sum.xt, sum.yt, sum.tt};
     for (std::size_t e = 0; e < 6; ++e) {
-      put(row + e, sums[e]);
+      rows_.put(row + e, sums[e]);
     }
   }
   SLIPWISE_LANES SymmetricLanes<Vector> white() const {
-    const std::size_t row = noise_row();
-    return {get(row), get(row + 1), get(row + 2), get(row + 3), get(row + 4), get(row + 5)};
+    const std::size_t row = rows_.noise_row();
+    return {rows_.get(row),     rows_.get(row + 1), rows_.get(row + 2),
+            rows_.get(row + 3), rows_.get(row + 4), rows_.get(row + 5)};
   }
   /// What is not known of the columns: their derivatives times the factor, squared.
   SLIPWISE_LANES SymmetricLanes<Vector> of_columns() const {
-    constexpr auto one = static_cast<Scalar>(1);
     SymmetricLanes<Vector> sum{};
     const Scalar* factor = plan_.factor;
     for (std::size_t first = 0; first < plan_.columns; first += kColumnsTogether) {
       Vector x[kColumnsTogether] = {}, y[kColumnsTogether] = {}, turn[kColumnsTogether] = {};
       std::size_t column = first;
       for (; column < plan_.turning; ++column, factor += kColumnsTogether) {
-        const Vector by_x = get(x_row(column)), by_y = get(y_row(column)), by_turn = get(turn_row(column));
+        const Vector by_x = rows_.get(rows_.x_row(column)), by_y = rows_.get(rows_.y_row(column)),
+                     by_turn = rows_.get(rows_.turn_row(column));
         for (std::size_t i = 0; i < kColumnsTogether; ++i) {
           x[i] = x[i] + by_x * factor[i];
           y[i] = y[i] + by_y * factor[i];
@@ -325,31 +334,30 @@ class TangentRide {
         }
       }
       for (; column < plan_.columns; ++column, factor += kColumnsTogether) {
-        const Vector by_x = get(x_row(column)), by_y = get(y_row(column));
+        const Vector by_x = rows_.get(rows_.x_row(column)), by_y = rows_.get(rows_.y_row(column));
         for (std::size_t i = 0; i < kColumnsTogether; ++i) {
           x[i] = x[i] + by_x * factor[i];
           y[i] = y[i] + by_y * factor[i];
         }
       }
       for (std::size_t i = 0; i < kColumnsTogether; ++i) {
-        first < plan_.turning ? add_square(x[i], y[i], turn[i], one, sum) : add_square(x[i], y[i], one, sum);
+        first < plan_.turning ? add_square(x[i], y[i], turn[i], kOne, sum) : add_square(x[i], y[i], kOne, sum);
       }
     }
     for (std::size_t i = 0; i < plan_.disturbed_count; ++i) {
       const std::size_t column = plan_.disturbed[i];
-      add_square(get(x_row(column)), get(y_row(column)), get(turn_row(column)),
+      add_square(rows_.get(rows_.x_row(column)), rows_.get(rows_.y_row(column)), rows_.get(rows_.turn_row(column)),
                  plan_.disturbance[period_ * plan_.disturbed_count + i], sum);
     }
     return sum;
   }
 
   SLIPWISE_LANES void write(const PathLanes<L>& path) {
-    const std::size_t row = noise_row() + 6;
+    const std::size_t row = rows_.noise_row() + 6;
     SymmetricLanes<Vector> noise = white();
-    constexpr auto one = static_cast<Scalar>(1);
-    add_square(get(row), get(row + 1), one, noise);
-    add_square(get(row + 2), get(row + 3), one, noise);
-    add_square(get(row + 4), get(row + 5), get(row + 6), one, noise);
+    add_square(rows_.get(row), rows_.get(row + 1), kOne, noise);
+    add_square(rows_.get(row + 2), rows_.get(row + 3), kOne, noise);
+    add_square(rows_.get(row + 4), rows_.get(row + 5), rows_.get(row + 6), kOne, noise);
     carry_to<L>(path, noise);
     scale_along(start_cosine_, start_sine_, plan_.root, noise);  // the learned factors belong to the axes of the start
     SymmetricLanes<Vector> sum = of_columns();
@@ -368,18 +376,25 @@ class TangentRide {
   std::size_t period_ = 0;
   std::size_t last_piece_;  ///< of the period
   bool along_ground_;       ///< slip depends on where the robot is
+  TangentRows<L> rows_;
   Vector start_cosine_, start_sine_;
 };
+
+template <class L, int kBy, typename Scalar = L::Scalar>
+SLIPWISE_LANES_APART unsigned roll_tangents_by(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+  RobotLanes<L, Actuator::Response, Slip::Any> robot;
+  TangentRide<L, kBy> ride(job, block);
+  ride_block<L, Actuator::Response, Slip::Any>(job, block, robot, ride);
+  return find_faults<L, true>(robot.path, block) |
+         (OutputLanes<L>(job, block).all_finite(robot.path) ? kNoFault : kNotFinite);
+}
 
 /// Rolls the block out with its tangents.
 template <class Level, typename Scalar>
 unsigned roll_tangents(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   using L = Lanes<Unpaired<Level>, Scalar>;
-  RobotLanes<L, Actuator::Response, Slip::Any> robot;
-  TangentRide<L> ride(job, block);
-  ride_block<L, Actuator::Response, Slip::Any>(job, block, robot, ride);
-  const OutputLanes<L> output(job, block);
-  return find_faults<L, true>(robot.path, block) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
+  const bool plain = !job.on_grade && job.edge_count == 0 && job.vy == nullptr;
+  return plain ? roll_tangents_by<L, kPlainSeeds>(job, block) : roll_tangents_by<L, kSeeds>(job, block);
 }
 
 }  // namespace slipwise

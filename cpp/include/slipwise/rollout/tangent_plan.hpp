@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -47,6 +48,7 @@ class TangentPlan {
   ActuatorScheduleOf<ActuatorDual> actuator_;
   std::vector<int> actuator_places_;
   std::vector<PartTangent<double>> parts_;
+  std::vector<std::uint8_t> moved_;
   std::vector<Column> columns_;  ///< of slip
   std::size_t turning_ = 0;
   std::vector<std::size_t> first_entry_, disturbed_;
