@@ -94,8 +94,6 @@ class TangentRide {
  private:
   using Wide = Differentiable::Vector;
 
-  SLIPWISE_LANES static Wide variable(const Vector& value, Seed seed) { return Wide::variable(value, seed); }
-
   /// A command began to act. What was before all commands keeps the drive as it is, and hangs on its parameters.
   SLIPWISE_LANES void take_command(std::ptrdiff_t next, std::size_t channel) {
     const bool keeps = next - 1 < job_.start_row && block_.past_count == 0;
@@ -160,21 +158,21 @@ class TangentRide {
   SLIPWISE_LANES void slip_with_seeds(const MeanLanes<L>& mean, const Robot& robot, Part& part) const {
     PartStart<Differentiable, Wide> from;
     from.coefficients = job_.coefficients + part.numbers->first_coefficient;
-    from.mean.v = variable(mean.v, kMeanV);
-    from.mean.omega = variable(mean.omega, kMeanOmega);
+    from.mean.v = Wide::variable(mean.v, kMeanV);
+    from.mean.omega = Wide::variable(mean.omega, kMeanOmega);
     if constexpr (kPlain) {
       slip_tangent<Differentiable>(job_, {from.coefficients, nullptr, false}, from.mean, part.any.products,
                                    part.any.driven);
       part.tangent = part.any.driven;
     } else {
       if (job_.vy != nullptr) {
-        from.mean.vy = variable(mean.vy, kMeanVy);
+        from.mean.vy = Wide::variable(mean.vy, kMeanVy);
       }
-      from.duration = variable(Vector{} + part.numbers->duration, kDuration);
+      from.duration = Wide::variable(Vector{} + part.numbers->duration, kDuration);
       from.heading = {robot.path.cosine, robot.path.sine};
       from.heading.cosine.by[kHeading] = -robot.path.sine;
       from.heading.sine.by[kHeading] = robot.path.cosine;
-      part.travelled = variable(robot.travelled, kTravelled);
+      part.travelled = Wide::variable(robot.travelled, kTravelled);
       any_tangent<Differentiable>(job_, from, part.travelled, part.any, part.tangent);
     }
   }
