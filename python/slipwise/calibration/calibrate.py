@@ -37,8 +37,9 @@ from slipwise.calibration.unused_measurements import unused_measurements
 from slipwise.calibration.verdict import LogFacts
 from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import LogError, ModelError, SettingsError
-from slipwise.logs.contradiction import Contradiction
-from slipwise.logs.contradictions import Seen, contradictions_in, contradictions_of_log
+from slipwise.logs.findings.checks import findings_in, findings_of_log
+from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.seen import Seen, WholeLog
 from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Log, has_course
 from slipwise.logs.motion_windows import evidence_of
@@ -108,6 +109,7 @@ def calibrate_by(
         (*log.left_out, *unused_runs(log, input_name), *windows.left_out),
         (
             *log.notes,
+            *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.spoils),
             *(source.sentence() for source in learned.sources),
             *unused_measurements(log, settings, smooth=smooth),
         ),
@@ -131,7 +133,7 @@ def model_of_log(learned: Learned, log: Log, input_name: str, settings: Settings
 
 def found_contradictions(
     learned: Learned, drive: tuple[PreparedRun, ...], given: tuple[Log, str, Settings]
-) -> tuple[Contradiction, ...]:
+) -> tuple[Finding, ...]:
     """Return where poses and inputs contradict each other in what was learned."""
     log, input_name, settings = given
     evidence = learned.evidence
@@ -146,14 +148,14 @@ def found_contradictions(
         sensor_yaw=settings.sensor_extrinsics.yaw,
     )
     unknown_after = settings.segment.unknown_after
-    return (*contradictions_in(seen), *contradictions_of_log(log, input_name, unknown_after))
+    return (*findings_in(seen), *findings_of_log(WholeLog(log, input_name, unknown_after)))
 
 
 def judged_content(
     learned: Learned,
     windows: WindowSet,
     given: tuple[Log, str, Settings],
-    found: tuple[Contradiction, ...],
+    found: tuple[Finding, ...],
 ) -> tuple[Judged, schema.ModelFile]:
     """Judge what was learned; also what its model file holds."""
     log, input_name, settings = given
@@ -255,7 +257,7 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     )
 
 
-def model_of(content: schema.ModelFile, log: Log, found: tuple[Contradiction, ...]) -> Model:
+def model_of(content: schema.ModelFile, log: Log, found: tuple[Finding, ...]) -> Model:
     """Make the model of a log, of which `found` is what contradicts itself.
 
     Raises:
@@ -273,7 +275,7 @@ def model_of(content: schema.ModelFile, log: Log, found: tuple[Contradiction, ..
 
 
 def _facts(
-    learned: Learned, windows: WindowSet, given: tuple[Log, str, Settings], found: tuple[Contradiction, ...]
+    learned: Learned, windows: WindowSet, given: tuple[Log, str, Settings], found: tuple[Finding, ...]
 ) -> LogFacts:
     """What the log says about a verdict."""
     log, input_name, settings = given

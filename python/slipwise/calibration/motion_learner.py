@@ -33,8 +33,9 @@ from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts
 from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import SettingsError
-from slipwise.logs.contradiction import Contradiction
-from slipwise.logs.contradictions import Seen, contradictions_in, contradictions_of_log, not_shown_yet
+from slipwise.logs.findings.checks import findings_in, findings_of_log, not_shown_yet
+from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.seen import Seen, WholeLog
 from slipwise.logs.log import Log
 from slipwise.models import Model, parse_model
 from slipwise.models.schema import ModelFile, Range
@@ -110,8 +111,9 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         self._remember = remember
         self._limits = None  # not saved
         self._start: Model | None = None  # that it began with
-        self._of_log: tuple[Contradiction, ...] = ()  # what only a whole log shows
+        self._of_log: tuple[Finding, ...] = ()  # what only a whole log shows
         self._log_known = False
+        self.found: tuple[Finding, ...] = ()  # what was wrong at the last judgement of a stream
         self._clocks_compared = False
 
     def start_run(self, name: str) -> None:
@@ -220,8 +222,8 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             made, judgement = model_of_log(learned, log, self._input, self._settings)
             return model_of(self._remembered(made.content, learned), log, ()), judgement
         sensors = Sensors(self._wheels, "", self._gyro_alone)
-        found = contradictions_in(self._seen(model.evidence))
-        facts = LogFacts((*found, *self._of_log), (), self._input, self._positions, self._clocks_compared)
+        found = self.found = (*findings_in(self._seen(model.evidence)), *self._of_log)
+        facts = LogFacts(found, (), self._input, self._positions, self._clocks_compared)
         judged = judge(to_judge(learned, self._settings, sensors, positions=self._positions), facts)
         slowest, fastest, right, left = model.range
         origin = ModelFacts(
@@ -244,10 +246,10 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
     def know_log(self, log: Log) -> None:
         """Take what a whole log shows beside the measurements that are pushed from it."""
         unknown_after = self._settings.segment.unknown_after
-        self._of_log, self._log_known = contradictions_of_log(log, self._input, unknown_after), True
+        self._of_log, self._log_known = findings_of_log(WholeLog(log, self._input, unknown_after)), True
         self.know_clocks(compared=log.clocks_compared)
 
-    def know_stream(self, found: tuple[Contradiction, ...]) -> None:
+    def know_stream(self, found: tuple[Finding, ...]) -> None:
         """Take what a stream shows beside what the learner keeps; a whole log shows it better."""
         if not self._log_known:
             self._of_log = found
@@ -256,9 +258,9 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         """Take whether stamps were compared with the times of arrival: a delay beyond 1 s is then real."""
         self._clocks_compared = compared
 
-    def contradictions(self) -> tuple[Contradiction, ...]:
+    def contradictions(self) -> tuple[Finding, ...]:
         """Return what shows that poses and inputs cannot both be right, of all that was pushed."""
-        return contradictions_in(self._seen(self._core.model().evidence))
+        return findings_in(self._seen(self._core.model().evidence))
 
     @property
     def compared(self) -> int:

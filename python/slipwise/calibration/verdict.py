@@ -17,7 +17,7 @@ from slipwise.calibration.identifiability import (
 from slipwise.calibration.judgement import FEWEST_WINDOWS, LEAST_EXPLAINED, Judgement
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.result import Verdict
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.finding import Finding
 from slipwise.models.parameter_table import physical_name
 from slipwise.models.schema import HeldOut
 from slipwise.number_text import count_text, number_text
@@ -59,7 +59,7 @@ class Identified:
 class LogFacts:
     """What the measurements themselves say about a verdict; whoever judges has to know all of it."""
 
-    contradictions: tuple[Contradiction, ...]
+    contradictions: tuple[Finding, ...]
     shortage: tuple[str, ...]  # why there are so few segments, and what to do, where they are too few
     input_name: str
     positions: bool  # only positions were measured
@@ -121,7 +121,7 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
     )
 
 
-def _contradicted(contradictions: tuple[Contradiction, ...]) -> str:
+def _contradicted(contradictions: tuple[Finding, ...]) -> str:
     return f"{_REFUSED} {'; '.join(each.sentence for each in contradictions)}." if contradictions else ""
 
 

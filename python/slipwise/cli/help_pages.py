@@ -11,7 +11,7 @@ from typer.core import TyperGroup
 
 #: The commands by what they are for, in the order of use; those of packages beside slipwise come last.
 GROUPS = {
-    "Learn": ("inspect", "calibrate", "evaluate", "show", "compare", "excite"),
+    "Learn": ("inspect", "doctor", "calibrate", "evaluate", "show", "compare", "excite"),
     "Use": ("export", "live", "plan", "lattice"),
     "Data": ("convert", "score", "fleet", "surfaces", "terrain"),
     "See it": ("demo", "simulate", "reproduce"),

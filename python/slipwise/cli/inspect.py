@@ -159,11 +159,13 @@ def _document(inspection: Inspection) -> dict[str, object]:
         | {"streams": [asdict(stream) for stream in inspection.streams]}
         | {"timing": [asdict(timing) for timing in inspection.timing]}
         | {"learnable": learnable, "maps": inspection.maps}
+        | {"findings": [asdict(found) for found in inspection.found]}
         | log_part(log, log.left_out)
     )
 
 
 def _show(out: Output, inspection: Inspection, *, advise: bool) -> None:
+    from slipwise.cli.doctor import show_findings
     from slipwise.cli.tables import show_left_out, show_notes
 
     log = inspection.log
@@ -182,6 +184,9 @@ def _show(out: Output, inspection: Inspection, *, advise: bool) -> None:
         for line in lines:
             out.line(f"  {line}")
         out.line()
+    if inspection.found:
+        out.line(f"Wrong in this log: {count_text(len(inspection.found), 'finding')}")
+        show_findings(out, inspection.found)
     for item in inspection.learned:
         _show_learnability(out, item, advise=advise)
 
@@ -257,10 +262,6 @@ def _show_timing(out: Output, timing: Sequence[Timing]) -> None:
 def _show_learnability(out: Output, item: Learnability, *, advise: bool) -> None:
     from slipwise.models.parameter_table import physical_name
 
-    for contradiction in item.contradictions:
-        out.line(f"Poses and {item.input}s contradict each other: {contradiction.sentence}")
-        for advice in contradiction.advice:
-            out.line(f"  {advice}")
     if item.missing:
         out.line(f"From {item.input}s nothing can be learned: {item.missing}")
         return

@@ -179,7 +179,7 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         roles = find_roles(wire, options, say, own=f"/{table.node}")
         roles = with_oriented_imu(wire, roles, say)
         for note in roles.guessed:
-            say(note)
+            say(str(note))
         input_name = table.input or ("command" if roles.command is not None else "wheel")
         say(f"learning from {input_name}s; the node is /{table.node}")
         if only_positions(roles):

@@ -14,6 +14,7 @@ import typer
 from slipwise.cli.calibrate import calibrate
 from slipwise.cli.compare import compare
 from slipwise.cli.convert import convert
+from slipwise.cli.doctor import doctor
 from slipwise.cli.errors import exit_code_of
 from slipwise.cli.evaluate import evaluate
 from slipwise.cli.excite import excite
@@ -42,6 +43,7 @@ app = typer.Typer(
 )
 _COMMANDS = (
     (inspect, "Show what is in a log and what can be learned from it."),
+    (doctor, "Say what is wrong with a robot's clocks, topics, units, signs and poses."),
     (calibrate, "Learn a motion model from logs."),
     (evaluate, "Compare methods on logs that they have not seen."),
     (show, "Show what a model has learned."),

@@ -24,7 +24,7 @@ from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation.methods import Contest, method_info, method_names, refuse_names_of_methods
 from slipwise.evaluation.result import Evaluation
 from slipwise.evaluation.scoring import scores_of
-from slipwise.logs.contradictions import contradictions
+from slipwise.logs.findings.checks import findings_of
 from slipwise.logs.log import Log, has_course
 from slipwise.models.model import Model
 
@@ -89,7 +89,7 @@ def evaluate(
         runs=tuple(run.name for run in log.runs),
         left_out=(*log.left_out, *unused_runs(log, input_name), *contest.targets[-1].left_out),
         notes=log.notes + notes,
-        contradictions=contradictions(
+        contradictions=findings_of(
             log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
         ),
         models=tuple(models),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.statistics import ErrorSummary
 from slipwise.frames import data_frame
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.log import LeftOut
 from slipwise.number_text import number_text
 
@@ -89,7 +89,7 @@ class Evaluation:
     left_out: tuple[LeftOut, ...]
     notes: tuple[str, ...]
     models: tuple[str, ...] = ()  # those of the methods that are model files as they are
-    contradictions: tuple[Contradiction, ...] = ()  # between the poses and the inputs of the log
+    contradictions: tuple[Finding, ...] = ()  # between the poses and the inputs of the log
     positions: bool = False  # only positions were measured
     clocks_compared: bool = False  # header stamps were compared with the times of receipt
 

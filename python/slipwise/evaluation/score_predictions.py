@@ -15,7 +15,7 @@ from slipwise.evaluation.methods import method_info
 from slipwise.evaluation.read_predictions import predictions_on, read_predictions
 from slipwise.evaluation.result import Evaluation, Score
 from slipwise.evaluation.scoring import scores_of
-from slipwise.logs.contradictions import contradictions
+from slipwise.logs.findings.checks import findings_of
 from slipwise.logs.log import Log
 
 _UNKNOWN = float("nan")
@@ -59,7 +59,7 @@ def score_predictions(
         runs=runs,
         left_out=log.left_out + contest.targets[-1].left_out,
         notes=log.notes + notes,
-        contradictions=contradictions(
+        contradictions=findings_of(
             log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
         ),
     )

@@ -18,6 +18,8 @@ from slipwise.inspection.learnability import Learnability, learnability_of
 from slipwise.inspection.streams import Stream, streams_of
 from slipwise.inspection.timing import Timing, timing_of
 from slipwise.logs import Log, LogOptions, Survey, open_log, survey_log
+from slipwise.logs.findings.diagnose import each_once
+from slipwise.logs.findings.finding import Finding, RefusedLogError
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,7 @@ class Inspection:
     learned: tuple[Learnability, ...]  # one for each kind of input, commands first
     timing: tuple[Timing, ...]
     maps: dict[str, tuple[str, ...]]  # lines of the coverage map, by kind of input
+    found: tuple[Finding, ...] = ()  # all that is wrong in it
     surveys: tuple[Survey, ...] = ()  # of each file: its topics or columns, and what they are used as
     problem: str = ""  # why the files make no log as they are; then the rest is empty
     kept: LearnedLog | None = None  # what a model of the log is made of, where it was asked for
@@ -58,7 +61,8 @@ def inspect_files(
     try:
         log = open_log(*paths, options=options)
     except LogError as unusable:
-        return Inspection(Log(runs=()), (), (), (), {}, surveys, str(unusable))
+        found = (unusable.found,) if isinstance(unusable, RefusedLogError) else ()
+        return Inspection(Log(runs=()), (), (), (), {}, found, surveys, str(unusable))
     if progress is not None:
         progress("learning", 0.5)
     return replace(inspect_log(log, settings, keep=keep), surveys=surveys)
@@ -93,6 +97,7 @@ def inspect_log(log: Log, settings: Settings | None = None, *, keep: bool = Fals
         maps={
             name: coverage_map(inputs[name], unknown_after=settings.segment.unknown_after) for name in present
         },
+        found=each_once((*log.found, *(found for item in learned for found in item.contradictions))),
         kept=kept.get(chosen or ""),
     )
 

@@ -16,8 +16,8 @@ from slipwise.calibration.prepared_run import prepare_run
 from slipwise.calibration.verdict import POSITIONS_ONLY
 from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
-from slipwise.logs.contradiction import Contradiction
-from slipwise.logs.contradictions import contradictions
+from slipwise.logs.findings.checks import findings_of
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.log import has_course
 from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 
@@ -49,7 +49,7 @@ class Learnability:
     left_out: tuple[LeftOut, ...]  # while windows were cut
     missing: str  # why nothing could be learned; empty where something could
     advice: tuple[str, ...]  # the drives that would determine the rest
-    contradictions: tuple[Contradiction, ...] = ()  # between the poses and these inputs
+    contradictions: tuple[Finding, ...] = ()  # between the poses and these inputs
 
     def parameter(self, name: str) -> LearnableParameter | None:
         """Return a parameter, None where the model has no such."""
@@ -67,7 +67,7 @@ def learnability_of(
         settings: of the learner.
         kept: gets what was learned, by input, with the predictions and limits that a model needs.
     """
-    found = contradictions(
+    found = findings_of(
         log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
     )
     return replace(_learned(log, input_name, settings, kept), contradictions=found)

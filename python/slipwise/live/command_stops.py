@@ -8,8 +8,8 @@ import math
 import numpy as np
 
 from slipwise.live.samples import Command, Pose
-from slipwise.logs.command_timeout import CommandStops
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.command_stops import CommandStops
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.log import Inputs, Poses
 
 WAIT = 1.0  # s; a command may come so much later than a pose of its stamp
@@ -53,10 +53,10 @@ class LiveCommandStops:
         """Say how rarely commands come and what to do about it; empty where they come often enough."""
         return " ".join(f"{each.rstrip('.')}." for each in self._stops.words(self._unknown_after) or ())
 
-    def found(self) -> tuple[Contradiction, ...]:
+    def found(self) -> tuple[Finding, ...]:
         """Say where the robot stops between commands that are taken to be held."""
         self._add()
-        found = self._stops.contradiction(self._unknown_after)
+        found = self._stops.found(self._unknown_after)
         return () if found is None else (found,)
 
     def _add(self) -> None:

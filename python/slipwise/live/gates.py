@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 
 from slipwise.live.samples import Command, Override, Pose, Stamped, Twist, Wheels
-from slipwise.live.source_watch import SourceWatch
+from slipwise.logs.findings.source_watch import SourceWatch
 from slipwise.models import Model
 
 RECOVERY = 2.0  # s for which a gate stays closed after its cause: lag and delay reach that far

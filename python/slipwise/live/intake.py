@@ -26,8 +26,8 @@ from slipwise.live.samples import (
     Wheels,
 )
 from slipwise.live.surface_watch import SurfaceWatch
-from slipwise.logs.clock_steps import set_back_words
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.clocks import ClockSetBack
+from slipwise.logs.findings.finding import Finding
 
 MOST_FRAMES = 1000  # whose names are kept
 
@@ -91,7 +91,7 @@ class Intake:
             self._said.count("a stamp that no other agrees with", number=self._clock.dropped)
             self._clock.dropped = 0
         if clock is Clock.SET_BACK:
-            self._said.note(self._clock.newest, set_back_words(self._clock.set_back_by))
+            self._said.note(self._clock.newest, ClockSetBack.by(self._clock.set_back_by).sentence)
             self._said.count("the clock was set back")
             self._gates.restart()
             self.surfaces.start_run(f"after the clock was set at {self._clock.newest:.3f} s")
@@ -104,7 +104,7 @@ class Intake:
             self._gates.take(each)
             self._push(each)
 
-    def contradictions(self) -> tuple[Contradiction, ...]:
+    def contradictions(self) -> tuple[Finding, ...]:
         """Return what a stream shows that the learner does not keep: how commands end."""
         return () if self._stops is None else self._stops.found()
 

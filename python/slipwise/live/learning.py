@@ -14,7 +14,7 @@ from slipwise.live.applied import start_value, values_of
 from slipwise.live.outputs import Validity
 from slipwise.live.said import Said
 from slipwise.live.validity import STATES, ModelValidity, model_words
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.finding import Finding
 from slipwise.models import Model
 
 OFTEN, SELDOM = 2.0, 5.0  # s between judgements: a long drive has many predictions to judge
@@ -41,7 +41,7 @@ class Learning:
         self.judgement: Judgement | None = None
         self.nis: float | None = None
         self.segments = 0
-        self.of_stream: Callable[[], tuple[Contradiction, ...]] = tuple  # what the learner does not keep
+        self.of_stream: Callable[[], tuple[Finding, ...]] = tuple  # what the learner does not keep
         self._said = said
         self._new = False  # whether something was learned since the last judgement
         self._compared = learner.compared  # how much of the driving was looked at for contradictions by then
@@ -91,6 +91,7 @@ class Learning:
             self.validity.contradicted("; ".join(found))
         else:
             self._said.ends(t, "no model")
+            self._say_findings(t)
             for p in self.model.vector.rows:
                 self.start_values.setdefault(p.name, start_value(p))
             waits = "" if self._shown else self.learner.not_shown_yet()
@@ -99,6 +100,12 @@ class Learning:
             self.validity.take(self.model, self.judgement, waits)
         self._follow(t, self._standing("; ".join(found)), before)
         return True
+
+    def _say_findings(self, t: float) -> None:
+        """Say once what is wrong and spoils no model; what does is said with the model that is not used."""
+        for each in self.learner.found:
+            if not each.spoils:
+                self._said.begins(t, each.kind, " ".join((f"{each.sentence}.", *each.advice)))
 
     def _standing(self, found: str) -> str:
         """Return why nothing may be used: a contradiction stands until two minutes of driving show none."""

@@ -13,6 +13,7 @@ from slipwise.errors import SettingsError
 from slipwise.live.one_rotation import deviation, rotation_of
 from slipwise.live.samples import Command, Gyro, Pose, Wheels
 from slipwise.logs.corrections import late_by
+from slipwise.logs.findings.topics import ZeroTwist
 from slipwise.logs.fixes import fix_of_status
 from slipwise.logs.joints import SideMotion
 from slipwise.logs.kinematics import twist_from_steering, twist_from_wheels
@@ -28,7 +29,7 @@ from slipwise.logs.messages import (
     Values,
 )
 from slipwise.logs.navsat import ecef, in_tangent_plane
-from slipwise.logs.odometry_twist import always_zero, poses_move, twist_zero_words, twists_between
+from slipwise.logs.odometry_twist import always_zero, poses_move, twists_between
 from slipwise.logs.options import LogOptions
 from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.wheel_readings import JointReadings, twists_of_wheels
@@ -83,7 +84,7 @@ def to_wheels(
     """
     scale_v, scale_omega = options.wheel_scale
     if kind != JOINT_STATE:
-        odometry = _OdometryTwists(lambda: say(twist_zero_words(topic)))
+        odometry = _OdometryTwists(lambda: say(ZeroTwist.of(topic).sentence))
 
         def twist(message: Any, t: float) -> Wheels:
             held, v, vy, omega = odometry.take(WHEEL_VALUES[kind](message), t)

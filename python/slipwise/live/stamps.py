@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from slipwise.logs.clock_steps import BACK, ENOUGH
-from slipwise.logs.header_clock import LATENCY, apart_words, clock_between, is_apart, shift_words
+from slipwise.logs.findings.clocks import ClockApart, ClockOfTopic
+from slipwise.logs.header_clock import LATENCY, clock_between, is_apart
 
 LOOKED_AT = 200  # messages with a header, of late
 _STEADY = 0.3  # s that delays differ by; more is another rate of the clock
@@ -59,8 +60,8 @@ class Stamps:
             return arrived
         if not self._said and main.steady:
             self._said = True
-            dated = "messages without a header get their clock"
-            self._say(f"{apart_words(main.lead, 'this computer')}: {dated}")
+            dated = ": messages without a header get their clock"
+            self._say(ClockApart.by(main.lead, "this computer", dated).sentence)
         return arrived + main.lead
 
     @property
@@ -80,7 +81,7 @@ class Stamps:
         if abs(found - before) > BACK or bool(found) != bool(before):
             self._shifts[topic] = found
             if found:
-                self._say(shift_words(topic, found))
+                self._say(ClockOfTopic.by(topic, found).sentence)
         return self._shifts.get(topic, 0.0)
 
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise import _core
-from slipwise.errors import LogError
+from slipwise.logs.findings.finding import RefusedLogError
+from slipwise.logs.findings.readings import TiltedSensor, TiltInDegrees
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Floats, Log, Poses, Run
 from slipwise.logs.motion_windows import wrapped
@@ -32,8 +33,8 @@ def levelled(log: Log) -> Log:
     gate, tally = _core.AttitudeGate(), Tally()
     runs = tuple(_level(run, gate, tally) for run in log.runs)
     words = mounting_words(gate.mounting)
-    notes = (*log.notes, words) if words else log.notes
-    return replace(log, runs=runs, notes=notes, left_out=log.left_out + tally.result())
+    log = replace(log, runs=runs, left_out=log.left_out + tally.result())
+    return log.with_found(TiltedSensor.of(words)) if words else log
 
 
 def mounting_words(mounting: _core.AttitudeMounting) -> str:
@@ -61,11 +62,7 @@ def _check_radians(log: Log, where: str) -> None:
     in_degrees = np.abs(wrapped(np.concatenate([roll, pitch]), 360.0))
     if np.linalg.norm(up.mean(axis=1)) < _STEADY and float(np.quantile(in_degrees, 0.99)) < _SLOPE:
         largest = float(in_degrees.max())
-        raise LogError(
-            f"roll and pitch look like degrees (up to {largest:.3g}: as radians the robot would tumble)",
-            where=where,
-            advice="convert the poses' angles to radians",
-        )
+        raise RefusedLogError(TiltInDegrees.of(largest), where)
 
 
 def _known(poses: Poses) -> Floats:

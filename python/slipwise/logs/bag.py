@@ -23,6 +23,8 @@ from slipwise.logs.bag_streams import (
     wheel_stream,
     with_tilts,
 )
+from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.topics import MissingFile
 from slipwise.logs.foxglove_file import open_bag
 from slipwise.logs.gyro import with_gyro
 from slipwise.logs.joints import SideMotion, sides_text
@@ -89,14 +91,17 @@ def read_bag(path: Path, options: LogOptions) -> Log:
             roles = choose_topics(bag.topics, options, source)
             collected = _collect(bag, roles, transforms, options)
             advice = {role: _with_joints(bag, text, options) for role, text in roles.advice.items()}
-            notes = [*roles.guessed, *advice.values(), *bag.missing]
+            missing = map(MissingFile.of, bag.missing)
+            notes: list[str | Finding] = [*roles.guessed, *advice.values(), *missing]
             context = BagContext(path.name, options, tally, notes)
             runs, compared = _runs_of_parts(path, roles, collected, context, file_missing=bool(bag.missing))
         except LogError as error:
             raise _told_of_bag(error, path, bag.topics, tally) from error
         count = sum(topic.count for topic in bag.topics)
         file = Source(str(path), files_sha256(files), bag.format, count)
-    return Log(runs, (file,), tally.result(), tuple(dict.fromkeys(notes)), advice, compared)
+    said = tuple(dict.fromkeys(map(str, notes)))
+    found = tuple(dict.fromkeys(note for note in notes if isinstance(note, Finding)))
+    return Log(runs, (file,), tally.result(), said, advice, compared, found=found)
 
 
 def collect_transforms(bag: BagFile, options: LogOptions) -> TransformCollector:
@@ -240,7 +245,7 @@ def _runs(
     clocks = replace(collected, samples=samples).compared_clocks(roles.pose.name if roles.pose else None)
     context = replace(context, clocks=clocks)
     unstamped = [each.topic for each in samples.values() if not each.has_header and len(each.values)]
-    notes.extend(clocks.sentences(unstamped))
+    notes.extend(clocks.said(unstamped))
     commands = wheels = poses = None
     if roles.command is not None and len(samples["command"].values):
         commands = command_stream(context, samples["command"], roles.command.type)

@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from slipwise.logs.clock_steps import Arrivals, clock_steps, part_of
+from slipwise.logs.findings.clocks import ClockSetBack
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.header_clock import BagClocks, clocks_of
 from slipwise.logs.log import Floats, Ints
 from slipwise.logs.messages import Samples, select
@@ -43,7 +45,9 @@ class Collected:
         return clocks_of(streams, first, clock)
 
 
-def parts_of(collected: Collected, *, file_missing: bool) -> tuple[tuple[Collected, ...], tuple[str, ...]]:
+def parts_of(
+    collected: Collected, *, file_missing: bool
+) -> tuple[tuple[Collected, ...], tuple[str | Finding, ...]]:
     """Return the parts of a bag in the order of receipt, and what begins each but the first, in words.
 
     Args:
@@ -52,7 +56,7 @@ def parts_of(collected: Collected, *, file_missing: bool) -> tuple[tuple[Collect
     """
     named = _arrivals(collected)
     steps = clock_steps(list(named.values()))
-    begins = {step.order: step.sentence() for step in steps}
+    begins: dict[float, str | Finding] = {step.order: ClockSetBack.by(step.seconds) for step in steps}
     if file_missing:
         begins |= _silences(named)
     if not begins:

@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.topics import NoRotation, ZeroTwist
 from slipwise.logs.fixes import status_codes
 from slipwise.logs.header_clock import BagClocks
 from slipwise.logs.joints import speeds_from_angles
@@ -16,7 +18,7 @@ from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
 from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples, select
 from slipwise.logs.navsat import course_of_path, east_north_up, heading_from_imu, tilt_from_imu
-from slipwise.logs.odometry_twist import always_zero, poses_move, twist_zero_words, twists_between
+from slipwise.logs.odometry_twist import always_zero, poses_move, twists_between
 from slipwise.logs.options import LogOptions
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
@@ -36,7 +38,7 @@ class BagContext:
     file: str
     options: LogOptions
     tally: Tally
-    notes: list[str]  # sentences about what was worked out
+    notes: list[str | Finding]  # what was worked out, and what was found to be wrong
     clocks: BagClocks = _NO_CLOCKS  # how headers and receipt go together
 
     def seconds(self, samples: Samples, role: str) -> Floats:
@@ -121,7 +123,7 @@ def _odometry_twists(context: BagContext, samples: Samples) -> Floats:
     twists, poses = samples.values[:, :3], samples.values[:, 3:]
     if not always_zero(twists) or not poses_move(poses):
         return twists
-    context.notes.append(twist_zero_words(samples.topic))
+    context.notes.append(ZeroTwist.of(samples.topic))
     return twists_between(context.seconds(samples, "wheels"), poses)
 
 
@@ -183,10 +185,7 @@ def _position_stream(context: BagContext, samples: Samples, inputs: Inputs | Non
     order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
     yaw[order] = course_of_path(t[order], values[order, 0], values[order, 1], inputs)
     first = ", ".join(f"{value:g}" for value in values[0, 3:7])
-    context.notes.append(
-        f"the quaternions of all {len(values)} poses of {samples.topic} are no rotations, such as ({first}): "
-        "only their positions are used, and headings are the direction of the path"
-    )
+    context.notes.append(NoRotation.of(samples.topic, len(values), first))
     columns = {"x": values[:, 0], "y": values[:, 1], "yaw": yaw, "frame": samples.frame.astype(np.float64)}
     if values.shape[1] > 7:
         columns["std_xy"] = deviation_of(values[:, 7:9])

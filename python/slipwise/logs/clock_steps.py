@@ -32,15 +32,6 @@ class ClockStep:
     order: float  # of the first stamp after it
     seconds: float  # by how much
 
-    def sentence(self) -> str:
-        """Say what happened."""
-        return set_back_words(self.seconds)
-
-
-def set_back_words(seconds: float) -> str:
-    """Say that the clock was set back, here and live."""
-    return f"the clock was set back by {seconds:.1f} s: a new run begins"
-
 
 def steps_back(t: Floats) -> Ints:
     """Return where stamps [N] of one stream are set back for good: the first stamp of each stretch.

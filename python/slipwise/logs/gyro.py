@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 
 from slipwise import _core
-from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Floats, Run
-from slipwise.logs.motion_windows import run_name
 from slipwise.logs.streams import RawStream
 
-_COLUMN = "gyro_z"  # rad/s, counter-clockwise
+COLUMN = "gyro_z"  # rad/s, counter-clockwise
 _ENOUGH = 15  # seconds in which the inputs turn; with fewer nothing is said
 _LEAST, _MOST = 0.05, 5.0  # turns of the gyro over those of the inputs
 _NONE = np.empty((0, 2))
@@ -24,13 +22,13 @@ _NONE = np.empty((0, 2))
 def gyro_alone(runs: Iterable[Run]) -> bool:
     """Say whether no pose was measured, but yaw rates: turns are then all that is learned from."""
     every = tuple(runs)
-    return not any(len(run.poses) for run in every) and any(len(_measured(run)) for run in every)
+    return not any(len(run.poses) for run in every) and any(len(measured_rates(run)) for run in every)
 
 
 def gyro_rows(run: Run) -> Floats:
     """Return rows of (t, yaw rate) in s and rad/s, [N, 2]; none where poses tell their turns themselves."""
-    rows = _measured(run)
-    return _NONE if _turns_otherwise(run, rows) else rows
+    rows = measured_rates(run)
+    return _NONE if turns_otherwise(run, rows) else rows
 
 
 def with_gyro(runs: tuple[Run, ...], stream: RawStream, starts: Floats) -> tuple[Run, ...]:
@@ -44,42 +42,17 @@ def with_gyro(runs: tuple[Run, ...], stream: RawStream, starts: Floats) -> tuple
     found = []
     for number, run in enumerate(runs):
         own = stream.in_time(stream.in_run(number, starts))
-        columns = {"t": own.t, _COLUMN: own.columns[_COLUMN]}
+        columns = {"t": own.t, COLUMN: own.columns[COLUMN]}
         found.append(replace(run, extra={**run.extra, **columns}) if len(own.t) else run)
     return tuple(found)
 
 
-def gyro_contradiction(turns: Floats, runs: Sequence[str]) -> Contradiction | None:
-    """Say whether a gyro that is learned from does not turn as the inputs do.
-
-    Args:
-        turns: sums of each run, of `_core.MotionEvidence`.
-        runs: their names.
-    """
-    odd = [run_name(runs, row[0]) for row in turns if _otherwise(row)]
-    return _said("the gyro does not turn as the inputs do", odd[0], spoils=True) if odd else None
-
-
-def left_out_gyros(runs: tuple[Run, ...]) -> tuple[Contradiction, ...]:
-    """Say which gyro is not used since it does not turn as the inputs do."""
-    odd = [run.name for run in runs if _turns_otherwise(run, _measured(run))]
-    return (
-        (_said("the gyro does not turn as the inputs do and is left out", odd[0], spoils=False),)
-        if odd
-        else ()
-    )
-
-
-def _said(what: str, run: str, *, spoils: bool) -> Contradiction:
-    advice = f"Give {_COLUMN} in rad/s, positive counter-clockwise seen from above."
-    return Contradiction("gyro-turns-otherwise", f"{what} (run {run})", (advice,), spoils=spoils)
-
-
-def _measured(run: Run) -> Floats:
-    if (len(run.poses) and not run.poses.course) or _COLUMN not in run.extra:
+def measured_rates(run: Run) -> Floats:
+    """Return rows of (t, yaw rate) in s and rad/s, [N, 2], where no pose tells a heading."""
+    if (len(run.poses) and not run.poses.course) or COLUMN not in run.extra:
         return _NONE
     try:
-        t, rate = (np.asarray(run.extra[name], dtype=np.float64) for name in ("t", _COLUMN))
+        t, rate = (np.asarray(run.extra[name], dtype=np.float64) for name in ("t", COLUMN))
     except ValueError:  # text
         return _NONE
     rows = np.column_stack((t, rate))
@@ -87,7 +60,8 @@ def _measured(run: Run) -> Floats:
     return rows[np.unique(rows[:, 0], return_index=True)[1]]
 
 
-def _turns_otherwise(run: Run, rows: Floats) -> bool:
+def turns_otherwise(run: Run, rows: Floats) -> bool:
+    """Say whether yaw rates [N, 2] of a run do not go with what its inputs turn."""
     if len(rows) < 2:
         return False
     settings, none = _core.StreamSettings(), np.empty((0, 4))
@@ -97,10 +71,10 @@ def _turns_otherwise(run: Run, rows: Floats) -> bool:
         for given in (run.commands, run.wheels)
     )
     recording = _core.Recording(commands, wheels, np.empty((0, 3)), np.empty((0, 7)), rows)
-    return any(_otherwise(row) for row in _core.motion_evidence(settings, [recording]).gyro_turns)
+    return any(otherwise(row) for row in _core.motion_evidence(settings, [recording]).gyro_turns)
 
 
-def _otherwise(turns: Floats) -> bool:
+def otherwise(turns: Floats) -> bool:
     """Say it of one run: number of seconds, then the sums of products and squares, follow its number."""
     _, seconds, product, square = turns
     return bool(seconds >= _ENOUGH and not _LEAST < product / square < _MOST)

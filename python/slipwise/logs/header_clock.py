@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from slipwise.logs.findings.clocks import ClockApart, ClockOfTopic, ClockRate, NoClock
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.log import Floats
 
 AHEAD = 0.02  # s; no message is stamped later than it is received: from here on its clock is ahead
@@ -65,17 +67,6 @@ def is_apart(lead: float) -> bool:
     return lead > AHEAD or lead < -LATENCY
 
 
-def apart_words(lead: float, whose: str) -> str:
-    """Say how far headers are ahead of the clock of whoever receives them [s]."""
-    side = "ahead of" if lead > 0.0 else "behind"
-    return f"header stamps are on another clock, {abs(lead):.2f} s {side} {whose}'s"
-
-
-def shift_words(topic: str, seconds: float) -> str:
-    """Say that the stamps of a topic are shifted to the clock of the poses."""
-    return f"the clock of {topic} is not that of the poses: {seconds:+.2f} s are added to its stamps"
-
-
 def compare_clocks(received: Floats, stamps: Floats) -> HeaderClock | None:
     """Return the clock of stamps [N] against times of receipt [N], both in s; None where they follow none."""
     if len(stamps) == 0:
@@ -130,22 +121,19 @@ class BagClocks:
         shift = self.shifts.get(topic, 0.0)
         return stamps + shift if shift else stamps
 
-    def sentences(self, unstamped: Sequence[str]) -> tuple[str, ...]:
+    def said(self, unstamped: Sequence[str]) -> tuple[str | Finding, ...]:
         """Say what was found, and how topics without headers are dated."""
         names, main = " and ".join(unstamped), self.main
         dated = f": {names}, without a header, gets their clock" if unstamped else ""
         if main is not None and main.simulated:
-            said = [f"header stamps run at {main.rate:.3g} of the bag's clock{dated}"]
+            said: list[str | Finding] = [ClockRate.by(main.rate, dated)]
         elif main is not None and main.apart:
-            said = [f"{apart_words(main.offset, 'the bag')}{dated}"]
+            said = [ClockApart.by(main.offset, "the bag", dated)]
         else:
             how = "has no header: its commands get the time of receipt"
             said = [f"{name} {how}" for name in unstamped]
-        said += [shift_words(topic, seconds) for topic, seconds in self.shifts.items()]
-        said += [
-            f"the stamps of {topic} do not follow the bag's clock: it gets the time of receipt"
-            for topic in sorted(self.received)
-        ]
+        said += [ClockOfTopic.by(topic, seconds) for topic, seconds in self.shifts.items()]
+        said += [NoClock.of(topic) for topic in sorted(self.received)]
         return tuple(said)
 
 

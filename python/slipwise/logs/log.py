@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import LogError
 from slipwise.frames import data_frame
+from slipwise.logs.findings.finding import Finding
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -198,6 +199,12 @@ class Log:
     advice: Mapping[str, str] = field(default_factory=dict)
     clocks_compared: bool = False  # header stamps were compared with the times of receipt
     sideways: bool = False  # the vehicle is known to drive sideways too
+    found: tuple[Finding, ...] = ()  # what its reader found to be wrong; the notes say it too
+
+    def with_found(self, *found: Finding) -> Log:
+        """Return the log with what else was found to be wrong, which is noted."""
+        notes = (*self.notes, *(each.sentence for each in found))
+        return replace(self, notes=notes, found=(*self.found, *found))
 
     def __repr__(self) -> str:
         seconds = sum(_duration(run.poses.t) for run in self.runs)

@@ -33,12 +33,6 @@ def poses_move(poses: Floats) -> bool:
     )
 
 
-def twist_zero_words(topic: str) -> str:
-    """Say that the poses of an odometry are differentiated."""
-    what = f"the twist of {topic} is always zero though its pose moves"
-    return f"{what}: wheel speeds are differences of its poses"
-
-
 def always_zero(twists: Floats) -> bool:
     """Say whether twists [N, 3] never say that anything moves."""
     return not (np.isfinite(twists) & (twists != 0.0)).any()

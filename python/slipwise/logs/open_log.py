@@ -111,8 +111,8 @@ def named_in_errors(path: Path, file: Path) -> Iterator[None]:
     except LogError as error:
         if file == path:
             raise
-        where = error.where.replace(str(file), shown(path))
-        raise LogError(error.what, where=where, advice=error.advice) from error
+        error.where = error.where.replace(str(file), shown(path))
+        raise
 
 
 def _read(file: Path, options: LogOptions, *, bag: bool) -> Log:
@@ -187,6 +187,7 @@ def joined(logs: list[Log]) -> Log:
         advice={name: text for log in reversed(logs) for name, text in log.advice.items()},
         clocks_compared=all(log.clocks_compared for log in logs),
         sideways=any(log.sideways for log in logs),
+        found=tuple(each for log in logs for each in log.found),
     )
 
 

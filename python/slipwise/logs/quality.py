@@ -7,15 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from slipwise.errors import LogError
 from slipwise.logs.attitude import levelled
-from slipwise.logs.contradiction import Contradiction
-from slipwise.logs.course_heading import as_positions, is_course
+from slipwise.logs.findings.course_heading import as_positions, is_course
+from slipwise.logs.findings.finding import Finding, RefusedLogError
+from slipwise.logs.findings.plausibility import Implausible, UnreachablePoses, agreement
+from slipwise.logs.findings.readings import NotInSeconds
+from slipwise.logs.findings.seen import OTHER, WORDS
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import LeftOut, Log, Run, has_course
 from slipwise.logs.motion_windows import evidence_of, measured_rows, motion_windows
-from slipwise.logs.plausibility import agreement, implausible, unreachable
 from slipwise.logs.pose_jumps import find_jumps, without_jumps
 
 _HARDLY = 10.0  # times as many poses out of order as in order
@@ -38,14 +39,15 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
     _check_forward(log, where)
     _check_seconds(log, where)
     rows = measured_rows(log.runs, unknown_after)
-    for name in ("command", "wheel"):
-        _refuse(implausible(agreement(motion_windows(rows, name)), f"{name}s"), where)
+    agreed = {name: agreement(motion_windows(rows, name)) for name in ("command", "wheel")}
+    for name, own in agreed.items():
+        _refuse(Implausible.of(own, WORDS[name], agreed[OTHER[name]]), where)
     runs, found = _smoothed(log, unknown_after)
     if _heads_along_course(runs, unknown_after):
         log = as_positions(log)
         runs, found = _smoothed(log, unknown_after)
     steps = sum(max(len(run.poses) - 1, 0) for run in log.runs)
-    _refuse(unreachable(sum(entry.count for entry in found), steps), where)
+    _refuse(UnreachablePoses.of(sum(entry.count for entry in found), steps), where)
     return replace(log, runs=runs, left_out=log.left_out + found)
 
 
@@ -73,24 +75,23 @@ def _check_forward(log: Log, where: str) -> None:
         if entry.kind in ("duplicate-stamp", "backward-stamp") and entry.reason.startswith("poses")
     )
     if rejected >= _FEW and rejected > _HARDLY * kept:
-        raise LogError(
-            f"stamps do not go forward in {rejected} of {kept + rejected} poses",
-            where=where,
-            advice="give each measurement its own time, in seconds",
-        )
+        what = f"stamps do not go forward in {rejected} of {kept + rejected} poses"
+        advice = "give each measurement its own time, in seconds"
+        raise RefusedLogError(NotInSeconds.found(what, advice, evidence=rejected), where)
 
 
 def _check_seconds(log: Log, where: str) -> None:
     """Refuse stamps that are not in seconds: no robot is measured every 10 s and slower."""
     steps = np.concatenate([np.empty(0), *(np.diff(run.poses.t) for run in log.runs)])
     if len(steps) >= _FEW and float(np.median(steps)) > _SLOWEST:
-        what = f"poses are {np.median(steps):.3g} s apart"
-        raise LogError(what, where=where, advice="stamps must be in seconds, not in ms, us or ns")
+        usual, advice = float(np.median(steps)), "stamps must be in seconds, not in ms, us or ns"
+        found = NotInSeconds.found(f"poses are {usual:.3g} s apart", advice, evidence=usual)
+        raise RefusedLogError(found, where)
 
 
-def _refuse(odd: Contradiction | None, where: str) -> None:
+def _refuse(odd: Finding | None, where: str) -> None:
     if odd is not None:
-        raise LogError(odd.sentence, where=where, advice=" ".join(odd.advice))
+        raise RefusedLogError(odd, where)
 
 
 def _smooth(run: Run, unknown_after: float, tally: Tally) -> Run:

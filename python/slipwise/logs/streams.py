@@ -9,8 +9,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.errors import LogError
 from slipwise.logs.absurd_speeds import FASTEST, absurd_speeds
+from slipwise.logs.findings.finding import RefusedLogError
+from slipwise.logs.findings.readings import AbsurdSpeeds, NotInSeconds
 from slipwise.logs.fixes import NO_FIX
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Forces, Inputs, Ints, Poses
@@ -143,7 +144,8 @@ def _without_absurd_speeds(stream: RawStream, tally: Tally) -> RawStream:
     if count > 3 and count > _TOO_MANY_ABSURD * len(absurd):
         what = f"{count} of {len(absurd)} {stream.name} are faster than {FASTEST:g} m/s or rad/s"
         where = stream.place(int(stream.rows[np.argmax(absurd)]))
-        raise LogError(what, where=where, advice="convert speeds to m/s and yaw rates to rad/s")
+        advice = "convert speeds to m/s and yaw rates to rad/s"
+        raise RefusedLogError(AbsurdSpeeds.found(what, advice, evidence=count), where)
     return _keep(stream, ~absurd, tally, "absurd-speed", "far beyond all speeds before, all at once")
 
 
@@ -152,9 +154,8 @@ def _without_impossible_stamps(stream: RawStream, tally: Tally) -> RawStream:
     if beyond.sum() > 0.5 * len(beyond):
         usual = float(np.median(np.abs(stream.t[beyond])))
         where = stream.place(int(stream.rows[np.argmax(beyond)]))
-        raise LogError(
-            f"stamps of {stream.name} are about {usual:.2g}", where=where, advice=unit_advice(usual)
-        )
+        what = f"stamps of {stream.name} are about {usual:.2g}"
+        raise RefusedLogError(NotInSeconds.found(what, unit_advice(usual), evidence=usual), where)
     return _keep(stream, ~beyond, tally, "bad-stamp", "whose stamp is not a time in seconds")
 
 

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from slipwise.errors import LogError
 from slipwise.logs.clock_steps import TOGETHER, Arrivals, clock_steps
 from slipwise.logs.column_names import check_columns
+from slipwise.logs.findings.clocks import ClockSetBack
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.fixes import fix_codes
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import (
@@ -110,6 +112,7 @@ def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
 
 def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
     notes: list[str] = []
+    found: list[Finding] = []
     require_columns(
         table, poses=options.poses is None, described=options.wheels is not None, car=options.car is not None
     )
@@ -119,10 +122,11 @@ def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
     runs = tuple(
         _run(part, rows, own, table, tally)
         for name, index in _split_by_run(table)
-        for part, own in _split_by_clock(name, index, rows, notes)
+        for part, own in _split_by_clock(name, index, rows, found)
     )
     source = Source(str(table.path), table.sha256, table.format, len(table))
-    return Log(runs, (source,), tally.result(), tuple(notes), missing_input(table, rows.wheels))
+    log = Log(runs, (source,), tally.result(), tuple(notes), missing_input(table, rows.wheels))
+    return log.with_found(*found)
 
 
 def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> _Rows:
@@ -235,9 +239,9 @@ def _split_by_run(table: Table) -> Iterator[tuple[str, slice | Ints]]:
 
 
 def _split_by_clock(
-    name: str, index: slice | Ints, rows: _Rows, notes: list[str]
+    name: str, index: slice | Ints, rows: _Rows, found: list[Finding]
 ) -> Iterator[tuple[str, slice | Ints]]:
-    """Yield the parts of a run before and after its clock was set back, which is noted; mostly one."""
+    """Yield the parts of a run before and after its clock was set back, which is found; mostly one."""
     numbers = np.arange(len(rows.t))[index]
     t = rows.t[numbers]
     if not (np.diff(t[np.isfinite(t)]) < 0.0).any():
@@ -249,7 +253,7 @@ def _split_by_clock(
     streams = [Arrivals(np.flatnonzero(there).astype(np.float64), t[there]) for there in held if there.any()]
     usual = float(np.median(np.abs(np.diff(t[np.isfinite(t)])))) or 1.0
     steps = clock_steps(streams, together=TOGETHER / usual)
-    notes += [f"{step.sentence()} ({name})" for step in steps]
+    found += [ClockSetBack.by(step.seconds, f" ({name})") for step in steps]
     edges = [0, *(int(step.order) for step in steps), len(t)]
     for number, (start, stop) in enumerate(itertools.pairwise(edges), start=1):
         yield name if number == 1 else f"{name}, part {number}", numbers[start:stop]

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from slipwise.errors import LogError
+from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.topics import OtherRobot
 from slipwise.logs.messages import (
     COMMAND_TYPES,
     IMU,
@@ -53,7 +55,7 @@ class TopicRoles:
     wheel: RoleChoice
     imu: RoleChoice
     problem: LogError | None  # why the bag cannot be read with these
-    guessed: tuple[str, ...]  # sentences about what was guessed
+    guessed: tuple[str | Finding, ...]  # what was guessed, and what was found to be wrong
     advice: Mapping[str, str]  # what would give an input that is not read, by the input's name
 
     def named(self) -> tuple[tuple[str, RoleChoice], ...]:
@@ -77,7 +79,7 @@ class Roles:
     command: Topic | None
     wheel: Topic | None
     imu: Topic | None
-    guessed: tuple[str, ...]  # sentences about what was guessed
+    guessed: tuple[str | Finding, ...]  # what was guessed, and what was found to be wrong
     advice: Mapping[str, str]  # what would give an input that is not read, by the input's name
     others: tuple[Topic, ...] = ()  # further sources of poses
     gyro: Topic | None = None  # whose yaw rates are read: beside positions without a heading
@@ -154,13 +156,13 @@ def weigh_topics(
     found = _with_foreign(TopicRoles(pose, command, wheel, imu, None, (), advice), every, foreign)
     problem = _problem(every, found, options, shared=shared)
     notes = _notes(found, options, transforms)
-    said = []
+    said: list[str | Finding] = []
     for name, why in foreign.items():
-        words = f"{name} is not used, since {why}"
         if wheel.topic is None and every[name].type in _WHEEL.kinds and "wheel" not in advice:
-            advice["wheel"] = f"{words}: else give --wheel-topic {name}"
+            said.append(other := OtherRobot.of(name, why, "--wheel-topic"))
+            advice["wheel"] = other.sentence
         else:
-            said.append(words)
+            said.append(f"{name} is not used, since {why}")
     return replace(found, problem=problem, guessed=(*notes, *said))
 
 

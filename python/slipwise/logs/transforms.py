@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.findings.clocks import PostdatedPoses
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.header_clock import AHEAD, compare_clocks
 from slipwise.logs.log import Bools, Floats, Ints
 from slipwise.logs.messages import stamp_of
@@ -46,7 +48,7 @@ class ChainPoses:
     stamps: Ints  # [N] ns
     received: Ints  # [N] ns
     values: Floats  # [N, 7] x, y, z, qx, qy, qz, qw
-    notes: tuple[str, ...] = ()  # how they are dated, and which are used
+    notes: tuple[str | Finding, ...] = ()  # how they are dated, and which are used
 
 
 @dataclass(frozen=True)
@@ -200,7 +202,7 @@ def chain_poses(edges: Edges, fixed: str, robot: str) -> ChainPoses:
     moving = [edge for edge in chain if len(edges[edge].stamps) > 1]
     lead = moving[0] if moving else chain[0]
     lower = [edge for edge in moving[1:] if _changes(edges[edge].rows).any()]
-    corrections, notes = edges[lead], list[str]()
+    corrections, notes = edges[lead], list[str | Finding]()
     if lower:
         corrections, notes = _dated(corrections, edges[lower[-1]], " -> ".join(lead))
     stamps = corrections.stamps
@@ -218,9 +220,9 @@ def chain_poses(edges: Edges, fixed: str, robot: str) -> ChainPoses:
     return ChainPoses(stamps[covered], corrections.received[covered], values[covered], tuple(notes))
 
 
-def _dated(corrections: Moves, odometry: Moves, name: str) -> tuple[Moves, list[str]]:
+def _dated(corrections: Moves, odometry: Moves, name: str) -> tuple[Moves, list[str | Finding]]:
     """Return the corrections dated by the odometry that they came from, without those that repeat."""
-    notes = []
+    notes: list[str | Finding] = []
     clock = compare_clocks(odometry.received / 1e9, odometry.stamps / 1e9)
     if clock is not None:
         ahead = corrections.stamps / 1e9 - clock.at(corrections.received / 1e9)
@@ -228,10 +230,7 @@ def _dated(corrections: Moves, odometry: Moves, name: str) -> tuple[Moves, list[
         if late > _POSTDATED:
             earlier = corrections.stamps - round(late * 1e9)
             corrections = Moves(earlier, corrections.rows, corrections.received)
-            notes.append(
-                f"{name} is stamped {late:.2f} s later than it is received (a transform tolerance): each "
-                "correction is dated by the odometry that it was computed from"
-            )
+            notes.append(PostdatedPoses.by(name, late))
     changed = _changes(corrections.rows)
     if changed.any() and not changed[1:].all():
         notes.append(

@@ -14,7 +14,7 @@ from slipwise.calibration.coming import Coming
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.logs import Log, Run
-from slipwise.logs.contradictions import contradictions
+from slipwise.logs.findings.checks import findings_of
 from slipwise.segments import recording_of
 from slipwise_sim.known_robot import KnownRobot, known_run
 
@@ -88,13 +88,13 @@ def test_slip_and_bias_are_true_within_their_uncertainty_and_turns_are_known_bet
 def test_a_gyro_that_turns_the_other_way_is_left_out_and_said() -> None:
     run = run_with_gyro(1, scale=-1.0)
     assert learned(run).gyro_bias[1] == pytest.approx(0.02, rel=0.1)  # nothing was pushed
-    found = contradictions(Log(runs=(run,)), "wheel")
+    found = findings_of(Log(runs=(run,)), "wheel")
     assert [each.kind for each in found] == ["gyro-turns-otherwise"]
     assert not found[0].spoils
     assert "counter-clockwise" in found[0].advice[0]
-    degrees = contradictions(Log(runs=(run_with_gyro(1, scale=57.3),)), "wheel")
+    degrees = findings_of(Log(runs=(run_with_gyro(1, scale=57.3),)), "wheel")
     assert [each.kind for each in degrees] == ["gyro-turns-otherwise"]
-    assert contradictions(Log(runs=(run_with_gyro(1),)), "wheel") == ()
+    assert findings_of(Log(runs=(run_with_gyro(1),)), "wheel") == ()
 
 
 def test_poses_tell_their_turns_themselves() -> None:

@@ -17,7 +17,7 @@ from slipwise.calibration.judgement import FEWEST_WINDOWS
 from slipwise.calibration.verdict import Identified, LogFacts, give_verdict
 from slipwise.errors import LogError
 from slipwise.logs import Log
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.finding import Finding
 from slipwise.models.parameter_table import physical_name
 from slipwise.models.summary import summarise
 
@@ -140,7 +140,7 @@ def test_poses_that_integrate_the_wheels_give_no_good_model() -> None:
 
 def test_a_log_that_no_model_can_hold_is_an_error_that_names_the_cause() -> None:
     learned = calibrate(sound_log(), input="command", settings=make_settings({"basis": "edd-2"})).model
-    cause = Contradiction("backward-poses", "the poses move backwards", ("Give --command-scale -1,1.",))
+    cause = Finding("backward-poses", "the poses move backwards", ("Give --command-scale -1,1.",))
     rows = [p.model_copy(update={"value": 9.0}) for p in learned.content.parameters]
     content = learned.content.model_copy(update={"parameters": rows})
     with pytest.raises(LogError, match=r"no robot explains this log: the poses move .*command-scale -1,1"):
@@ -149,7 +149,7 @@ def test_a_log_that_no_model_can_hold_is_an_error_that_names_the_cause() -> None
         model_of(content, Log(runs=()), ())
 
 
-def facts(contradictions: tuple[Contradiction, ...] = ()) -> LogFacts:
+def facts(contradictions: tuple[Finding, ...] = ()) -> LogFacts:
     return LogFacts(contradictions, (), "command", positions=False, clocks_compared=False)
 
 
@@ -218,7 +218,7 @@ def test_heavy_tails_are_said_and_covariances_that_hold_what_they_should_are_not
 
 
 def test_a_short_stop_qualifies_a_good_verdict() -> None:
-    stop = Contradiction("does-not-move", "the robot stops", ("Cut it out.",), spoils=False)
+    stop = Finding("does-not-move", "the robot stops", ("Cut it out.",), spoils=False)
     verdict = give_verdict(judged(BETTER, BETTER), Identified(2, ()), facts(contradictions=(stop,)))
     assert verdict.good
     assert verdict.reservations == ("The robot stops.",)

@@ -48,6 +48,12 @@ def test_the_settings_page_lists_every_key_with_its_default() -> None:
     assert (float(defaults[1]), float(defaults[2])) == (SEGMENT_SECONDS["wheel"], SEGMENT_SECONDS["command"])
 
 
+def test_the_troubleshooting_page_lists_every_check() -> None:
+    page = read("troubleshooting.md")
+    written = runpy.run_path(str(DOCS / "findings_page.py"))["with_rows"](page)
+    assert written == page, "run python docs/findings_page.py"
+
+
 def test_the_settings_blocks_of_other_pages_are_valid_and_without_older_keys() -> None:
     for page in sorted(DOCS.glob("*.md")):
         for block in blocks(page, "toml"):

@@ -18,7 +18,7 @@ from slipwise import _core
 from slipwise.calibration import calibrate
 from slipwise.errors import LogError
 from slipwise.logs import Log, Run
-from slipwise.logs.contradictions import contradictions
+from slipwise.logs.findings.checks import findings_of
 from slipwise.logs.log import LeftOut, empty_poses
 from slipwise.logs.quality import checked
 
@@ -209,17 +209,17 @@ def test_reverse_may_be_slow_or_seldom(speeds: tuple[float, float]) -> None:
 
 def test_a_course_over_ground_is_a_contradiction_where_headings_are_learned_from() -> None:
     for source in ("command", "wheel"):
-        (found,) = contradictions(over_ground(sound_log((-0.4, 0.8))), source)
+        (found,) = findings_of(over_ground(sound_log((-0.4, 0.8))), source)
         assert (found.kind, found.spoils) == ("course-heading", True)
         assert "[live] positions = true" in found.advice[0]
-        assert not contradictions(sound_log((-0.4, 0.8)), source)
+        assert not findings_of(sound_log((-0.4, 0.8)), source)
 
 
 def test_a_drive_that_follows_late_is_no_course_over_ground() -> None:
     late = Drive(seconds=120.0, lag=1.5, delay=0.4, speeds=(-0.3, 1.2))
     for seed in range(5):
         assert not checked(simulated_log(replace(late, seed=seed))).notes
-        assert not contradictions(simulated_log(replace(late, seed=seed)), "command")
+        assert not findings_of(simulated_log(replace(late, seed=seed)), "command")
 
 
 # Speeds in other units

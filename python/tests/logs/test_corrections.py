@@ -12,8 +12,8 @@ from contradictory_logs import scaled, sound_log, turned, with_poses
 from slipwise.calibration import make_settings
 from slipwise.errors import SettingsError
 from slipwise.logs import Log, LogOptions
-from slipwise.logs.contradictions import contradictions
 from slipwise.logs.corrections import scaled_inputs, turned_poses
+from slipwise.logs.findings.checks import findings_of
 
 
 def corrected(log: Log, options: LogOptions) -> Log:
@@ -39,7 +39,7 @@ def test_a_scale_gives_the_sound_log_back(name: str, factor: float, options: Log
     np.testing.assert_allclose(got.v, expected.v, atol=1e-12)
     np.testing.assert_array_equal(got.omega, expected.omega)
     assert cured.notes[0].startswith(f"{name}: speed times ")
-    assert contradictions(cured, name.removesuffix("s")) == ()
+    assert findings_of(cured, name.removesuffix("s")) == ()
 
 
 @pytest.mark.parametrize("angle", [np.pi, 0.5 * np.pi, -0.5 * np.pi])
@@ -48,7 +48,7 @@ def test_a_yaw_offset_gives_the_sound_log_back(angle: float) -> None:
     difference = cured.runs[0].poses.yaw - sound_log().runs[0].poses.yaw
     np.testing.assert_allclose(np.sin(difference), 0.0, atol=1e-9)
     assert "rad added to every heading" in cured.notes[0]
-    assert contradictions(cured, "wheel") == ()
+    assert findings_of(cured, "wheel") == ()
 
 
 def test_roll_and_pitch_are_turned_with_the_sensor() -> None:

@@ -4,13 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.log import Bools, Log, Poses, Run
 from slipwise.logs.motion_windows import MotionWindows, wrapped
 from slipwise.logs.navsat import course_of_path
+
+if TYPE_CHECKING:
+    from slipwise.logs.findings.seen import Seen
 
 _LEAST = 0.03  # [m] by the inputs and by the poses; less tells no direction
 _MOST_TURN = 1.5  # [rad] by the inputs and by the poses; on a tighter arc the ends tell little of the course
@@ -22,21 +26,30 @@ _ABOUT = -0.3  # mean cosine of the turns across reversals; a drive that follows
 SENTENCE = "the heading of the poses turns by half a turn when the robot reverses: it is a course over ground"
 
 
-def course_heading(windows: MotionWindows, sensor_yaw: float = 0.0) -> Contradiction | None:
-    """Say whether poses move along their heading while the inputs drive forwards and backwards alike.
+class CourseHeading(Check):
+    """Headings that point to where the robot moves."""
+
+    kind, family = "course-heading", "signs and units"
+    means = "the heading is a course over ground, as of a satellite receiver"
+    shows = "poses move along their heading in forward and reverse drive, and turn by half a turn in between"
+    cure = "none: only positions are used; live `--set live.positions=true`, or a heading of two antennas"
+    explained_by = ("does-not-move",)
+
+    def look(self, seen: Seen) -> Finding | None:
+        """Say whether poses move along their heading while the inputs drive forwards and backwards alike."""
+        if seen.positions or not is_course(seen.windows, seen.sensor_yaw):
+            return None
+        advice = "Set [live] positions = true, to use positions only; slipwise calibrate does so by itself."
+        return self.found(SENTENCE, advice)
+
+
+def is_course(windows: MotionWindows, sensor_yaw: float = 0.0) -> bool:
+    """Whether headings are a course over ground.
 
     Args:
         windows: of one kind of input.
         sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
     """
-    if not is_course(windows, sensor_yaw):
-        return None
-    advice = "Set [live] positions = true, to use positions only; slipwise calibrate does so by itself."
-    return Contradiction("course-heading", SENTENCE, (advice,))
-
-
-def is_course(windows: MotionWindows, sensor_yaw: float = 0.0) -> bool:
-    """Whether headings are a course over ground; arguments as of `course_heading`."""
     w = windows
     along = (w.distance > _LEAST) & (np.abs(w.forward) > _LEAST) & (np.abs(w.forward) > np.abs(w.sideways))
     along &= (np.abs(w.rotation) < _MOST_TURN) & (np.abs(w.turn) < _MOST_TURN)
@@ -58,7 +71,9 @@ def is_course(windows: MotionWindows, sensor_yaw: float = 0.0) -> bool:
 def as_positions(log: Log) -> Log:
     """Return the log with positions alone, since its headings are a course over ground; which is noted."""
     runs = tuple(replace(run, poses=_positions(run)) for run in log.runs)
-    return replace(log, runs=runs, notes=(*log.notes, f"{SENTENCE}; only positions are used"))
+    advice = "Record a heading, of two antennas or a lidar, to learn a constant side slip too."
+    found = CourseHeading.found(f"{SENTENCE}; only positions are used", advice, spoils=False)
+    return replace(log, runs=runs).with_found(found)
 
 
 def _positions(run: Run) -> Poses:

@@ -5,12 +5,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.log import Bools, Floats
 from slipwise.logs.motion_windows import MotionWindows, run_name
+
+if TYPE_CHECKING:
+    from slipwise.logs.findings.seen import Seen
 
 TURN_ARM = 0.3  # [m] at which a turn counts as distance
 _LEAST = 0.05  # [m] by the inputs in a window; slower driving may be inside a dead band
@@ -38,36 +42,43 @@ class Stretch:
         return f"{self.start:.1f} to {self.stop:.1f} s{where}"
 
 
-def standstill(windows: MotionWindows, runs: Sequence[str], cause: str) -> Contradiction | None:
-    """Say whether the robot stands still for a part of the time that it is driven.
+class DoesNotMove(Check):
+    """A robot that stands still for a part of the time that it is driven."""
 
-    Args:
-        windows: of one kind of input.
-        runs: names, by the number of the run in `windows`.
-        cause: what drives it, such as "it is commanded".
-    """
-    driven, still = _driven_and_still(windows)
-    stretches = _stretches(windows, still)
-    seconds = sum(stretch.still for stretch in stretches)
-    driven_seconds = float(windows.duration[driven].sum())
-    longest = max((stretch.still for stretch in stretches), default=0.0)
-    spoils = seconds > _SPOILT * driven_seconds
-    if longest < (_SHORTEST if spoils else _SAID):
-        return None
-    shown = sorted(stretches, key=lambda stretch: -stretch.still)[:_SHOWN]
-    in_order = sorted(shown, key=lambda stretch: (stretch.run, stretch.start))
-    places = ", ".join(stretch.words(runs) for stretch in in_order)
-    more = f" and in {len(stretches) - _SHOWN} more stretches" if len(stretches) > _SHOWN else ""
-    return Contradiction(
-        "does-not-move",
-        f"the robot does not move although {cause}, for {seconds:.1f} s of {driven_seconds:.1f} s of driving",
-        (
-            f"It stands still from {places}{more}.",
+    kind, family = "does-not-move", "drive"
+    means = "the robot does not move although it is driven: a stop, a blocked robot, a localiser that stood"
+    shows = "poses move less than a tenth of the inputs for 6 s; no model is good from a fifth of the time on"
+    cure = "look at the emergency stop and the localiser; `--start`, `--end` leave such a time out"
+    explained_by = ("unlikely-speed",)
+
+    def look(self, seen: Seen) -> Finding | None:
+        """Look for stretches of windows without motion."""
+        windows, runs = seen.windows, seen.runs
+        driven, still = _driven_and_still(windows)
+        stretches = _stretches(windows, still)
+        seconds = sum(stretch.still for stretch in stretches)
+        driven_seconds = float(windows.duration[driven].sum())
+        longest = max((stretch.still for stretch in stretches), default=0.0)
+        spoils = seconds > _SPOILT * driven_seconds
+        if longest < (_SHORTEST if spoils else _SAID):
+            return None
+        return self.found(
+            f"the robot does not move although {seen.words.drives}, for {seconds:.1f} s of "
+            f"{driven_seconds:.1f} s of driving",
+            f"It stands still from {_places(stretches, runs)}.",
             "Look for an emergency stop, a blocked robot or a localiser that had stopped.",
             "--start and --end leave such a time out.",
-        ),
-        spoils,
-    )
+            evidence=seconds,
+            spoils=spoils,
+        )
+
+
+def _places(stretches: tuple[Stretch, ...], runs: Sequence[str]) -> str:
+    """Say where the longest stretches are."""
+    shown = sorted(stretches, key=lambda stretch: -stretch.still)[:_SHOWN]
+    in_order = sorted(shown, key=lambda stretch: (stretch.run, stretch.start))
+    more = f" and in {len(stretches) - _SHOWN} more stretches" if len(stretches) > _SHOWN else ""
+    return ", ".join(stretch.words(runs) for stretch in in_order) + more
 
 
 def _driven_and_still(windows: MotionWindows) -> tuple[Bools, Bools]:

@@ -25,7 +25,7 @@ from sample_logs import Drive, steady_run
 
 from slipwise import _core
 from slipwise.logs import Log, LogOptions, Poses, open_log
-from slipwise.logs.contradictions import contradictions
+from slipwise.logs.findings.checks import findings_of
 from slipwise.logs.time_span import cut_to_span
 
 HALF = 30.0  # s
@@ -65,22 +65,22 @@ CONTRADICTORY: dict[str, tuple[Log, str, str, str]] = {  # log, input, kind, wha
 def test_each_contradiction_is_named_with_what_cures_it(subtests: pytest.Subtests) -> None:
     for name, (log, input_name, kind, cure) in CONTRADICTORY.items():
         with subtests.test(name=name):
-            found = contradictions(log, input_name)
+            found = findings_of(log, input_name)
             assert [each.kind for each in found] == [kind]
             assert found[0].spoils
             assert cure in " ".join(found[0].advice)
 
 
 def test_a_stopped_robot_is_said_in_these_words() -> None:
-    found = contradictions(stopped(sound_log(), 0.0), "command")
+    found = findings_of(stopped(sound_log(), 0.0), "command")
     assert found[0].sentence.startswith("the robot does not move although it is commanded, for ")
 
 
 def test_a_flipped_sign_is_told_from_a_turned_frame_by_the_other_input() -> None:
     flipped, both = scaled(sound_log(), "commands", -1.0), turned(sound_log(), np.pi)
-    assert "--pose-yaw-offset" not in " ".join(contradictions(flipped, "command")[0].advice)
-    assert contradictions(flipped, "wheel") == ()
-    assert "--pose-yaw-offset" in contradictions(both, "command")[0].advice[0]
+    assert "--pose-yaw-offset" not in " ".join(findings_of(flipped, "command")[0].advice)
+    assert findings_of(flipped, "wheel") == ()
+    assert "--pose-yaw-offset" in findings_of(both, "command")[0].advice[0]
 
 
 def test_slip_lag_and_noise_are_no_contradiction(subtests: pytest.Subtests) -> None:
@@ -96,7 +96,7 @@ def test_slip_lag_and_noise_are_no_contradiction(subtests: pytest.Subtests) -> N
     ]:
         for input_name in ["command", "wheel"]:
             with subtests.test(drive=drive, input_name=input_name):
-                assert contradictions(sound_log(drive), input_name) == ()
+                assert findings_of(sound_log(drive), input_name) == ()
 
 
 def test_a_short_stop_is_said_but_spoils_nothing() -> None:
@@ -108,20 +108,20 @@ def test_a_short_stop_is_said_but_spoils_nothing() -> None:
         x, y, yaw = (np.where(at, column[hold], column) for column in (p.x, p.y, p.yaw))
         return replace(p, x=x, y=y, yaw=yaw)
 
-    found = contradictions(with_poses(log, held), "wheel")
+    found = findings_of(with_poses(log, held), "wheel")
     assert [(each.kind, each.spoils) for each in found] == [("does-not-move", False)]
     assert "It stands still from 51.0 to 58.5 s." in found[0].advice
 
 
 def test_a_sensor_that_is_known_to_be_turned_is_no_contradiction() -> None:
     log = turned(sound_log(), 0.5 * np.pi)
-    assert contradictions(log, "wheel", sensor_yaw=0.5 * np.pi) == ()
+    assert findings_of(log, "wheel", sensor_yaw=0.5 * np.pi) == ()
 
 
 def test_a_log_without_the_input_or_without_motion_has_none() -> None:
     still = Log(runs=(steady_run(v=0.0),))
-    assert contradictions(still, "command") == ()
-    assert contradictions(replace(still, runs=(replace(still.runs[0], wheels=None),)), "wheel") == ()
+    assert findings_of(still, "command") == ()
+    assert findings_of(replace(still, runs=(replace(still.runs[0], wheels=None),)), "wheel") == ()
 
 
 LATE = 1000.0  # s
@@ -145,7 +145,7 @@ LATELY: dict[str, tuple[Callable[[Log], Log], str, str]] = {  # what changes, in
 @pytest.mark.parametrize("name", LATELY)
 def test_what_begins_after_a_long_drive_is_found_in_the_last_two_minutes(name: str) -> None:
     change, input_name, kind = LATELY[name]
-    found = contradictions(since(LONG, change, LATE), input_name)
+    found = findings_of(since(LONG, change, LATE), input_name)
     assert found[0].kind == kind
     assert found[0].spoils
     assert found[0].sentence.startswith("in the last two minutes of driving, ")
@@ -153,15 +153,15 @@ def test_what_begins_after_a_long_drive_is_found_in_the_last_two_minutes(name: s
 
 
 def test_a_long_sound_drive_has_no_contradiction() -> None:
-    assert contradictions(LONG, "wheel") == ()
-    assert contradictions(LONG, "command") == ()
+    assert findings_of(LONG, "wheel") == ()
+    assert findings_of(LONG, "command") == ()
 
 
 def test_poses_that_begin_to_repeat_the_wheels_are_found_in_the_last_two_minutes() -> None:
     (run,) = LONG.runs
     assert run.wheels is not None
     repeated = replace(run, poses=joined_poses(run.poses, dead_reckoned(run.wheels), LATE))
-    (found,) = contradictions(replace(LONG, runs=(repeated,)), "wheel")
+    (found,) = findings_of(replace(LONG, runs=(repeated,)), "wheel")
     assert (found.kind, found.spoils) == ("repeated-wheels", True)
 
 
@@ -186,5 +186,5 @@ def test_no_real_robot_contradicts_its_inputs(real_log_dir: Path) -> None:
         for end in (*np.arange(40.0, last, 20.0), last + 1.0):
             part = cut_to_span(log, None, float(end))
             for name in ("command", "wheel"):
-                found += [(path.name, end, name, each.sentence) for each in contradictions(part, name)]
+                found += [(path.name, end, name, each.sentence) for each in findings_of(part, name)]
     assert found == []

@@ -12,14 +12,17 @@ from sample_logs import poses_of, simulated_run
 
 from slipwise import _core
 from slipwise.logs import Inputs, Log, Poses, Run
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.repeated_wheels import RepeatedWheels
+from slipwise.logs.findings.seen import Seen
 from slipwise.logs.motion_windows import evidence_of
-from slipwise.logs.repeated_wheels import repeated_wheels
 
 
-def found_in(pairs: list[tuple[Inputs, Poses]]) -> Contradiction | None:
+def found_in(pairs: list[tuple[Inputs, Poses]]) -> Finding | None:
     """Look for it in runs of wheels and poses."""
-    return repeated_wheels(evidence_of([Run("run", None, wheels, poses) for wheels, poses in pairs], 0.5))
+    evidence = evidence_of([Run("run", None, wheels, poses) for wheels, poses in pairs], 0.5)
+    seen = Seen(evidence, ["run"], "wheel", positions=False, gyro=False, sensor_yaw=0.0)
+    return RepeatedWheels().look(seen)
 
 
 def pairs(log: Log) -> list[tuple[Inputs, Poses]]:

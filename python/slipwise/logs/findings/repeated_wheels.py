@@ -4,12 +4,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from slipwise import _core
-from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.motion_windows import wrapped
+
+if TYPE_CHECKING:
+    from slipwise.logs.findings.seen import Seen
 
 _Evidence = _core.MotionEvidence | _core.RecentEvidence
 
@@ -42,26 +46,29 @@ class _Difference:
         )
 
 
-def repeated_wheels(evidence: _Evidence) -> Contradiction | None:
-    """Say whether the poses are the wheels' own path.
+class RepeatedWheels(Check):
+    """Poses that are the wheels' own path.
 
     Simulators whose robots slip have poses of their own, however exact they are.
-
-    Args:
-        evidence: of all that was driven.
     """
-    found = _least(evidence)
-    if found is None or not found.none:
-        return None
-    return Contradiction(
-        "repeated-wheels",
-        "the poses carry no information of their own: over a second they follow the wheels' own path to "
-        f"{max(1e3 * found.place, 0.01):.2g} mm and less than {_SAME_HEADING} rad, which no sensor could",
-        (
+
+    kind, family = "repeated-wheels", "topics"
+    means = "the poses carry no information of their own: they integrate the wheels, as `/odom` does"
+    shows = "over a second they follow the wheels to 0.0003 rad, 0.3 % along and 1 % across"
+    cure = "`--pose-topic` of a lidar, RTK or motion capture; in a simulator, its ground truth"
+
+    def look(self, seen: Seen) -> Finding | None:
+        """Compare poses with the wheels' path at all offsets between their clocks."""
+        found = _least(seen.evidence)
+        if found is None or not found.none:
+            return None
+        return self.found(
+            "the poses carry no information of their own: over a second they follow the wheels' own path to "
+            f"{max(1e3 * found.place, 0.01):.2g} mm and less than {_SAME_HEADING} rad, which no sensor could",
             "They integrate the wheels, as /odom does, and show no slip.",
             "Record poses of another source: lidar, RTK, motion capture; in a simulator, its ground truth.",
-        ),
-    )
+            evidence=found.place,
+        )
 
 
 def _least(evidence: _Evidence) -> _Difference | None:

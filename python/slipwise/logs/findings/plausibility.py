@@ -4,16 +4,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from slipwise.logs.contradiction import Contradiction
-from slipwise.logs.input_units import likely_speeds, likely_turns
+from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.findings.input_units import likely_speeds, likely_turns
 from slipwise.logs.log import Floats
 from slipwise.logs.motion_windows import MotionWindows
 
+if TYPE_CHECKING:
+    from slipwise.logs.findings.seen import InputWords, Seen
+
 ENOUGH = 15  # windows; with fewer nothing is said
 ENOUGH_TURN = 3.0  # [rad] in total
+_TURN_TOGETHER = 0.5  # correlation of turns
 _MOST_JUMPS = 0.3  # part of all steps; more jumps than this are no accident
 _FEW_STEPS = 20  # with fewer no such judgement is made
 _DEGREES = 180.0 / np.pi
@@ -71,36 +76,67 @@ def agreement(windows: MotionWindows) -> Agreement:
     )
 
 
-def implausible(found: Agreement, inputs: str) -> Contradiction | None:
-    """Say which units, columns or axes look wrong, and what to do.
+class Implausible(Check):
+    """Units, columns or axes that look wrong, of either input."""
 
-    Args:
-        found: of one kind of input.
-        inputs: its name, "commands" or "wheels".
-    """
-    if found.windows < ENOUGH:
+    kind, family = "implausible", "signs and units"
+    means = "degrees, a factor, swapped columns (v and omega, x and y), a sign of yaw, left and right swapped"
+    shows = "turns and courses of the poses agree with the inputs only after the change that is named"
+    cure = "`--wheel-scale 1,-1`, `--command-scale F,F`, or convert the column; the message says which"
+
+    def look(self, seen: Seen) -> Finding | None:
+        """Look at the input that is learned from, then at the other."""
+        own, other = (seen.agreement(words.input_name) for words in (seen.words, seen.other_words))
+        return self.of(own, seen.words, other) or self.of(other, seen.other_words, own)
+
+    @classmethod
+    def of(cls, agreed: Agreement, words: InputWords, other: Agreement) -> Finding | None:
+        """Say which units, columns or axes look wrong, and what to do.
+
+        Args:
+            agreed: of one kind of input.
+            words: how that is called.
+            other: of the other kind, which may tell whether inputs or poses are wrong.
+        """
+        if agreed.windows < ENOUGH:
+            return None
+        alone = other.turning > ENOUGH_TURN and other.yaw_inputs > _TURN_TOGETHER
+        mirrored = _mirrored(agreed, words, alone=alone)
+        for what, advice in (_units(agreed, words), _swapped(agreed, words), mirrored):
+            if what:
+                return cls.found(what, advice, evidence=agreed.yaw_ratio)
         return None
-    for what, advice in (_units(found, inputs), _swapped(found, inputs), _mirrored(found)):
-        if what:
-            return Contradiction("implausible", what, (advice,))
-    return None
 
 
-def unreachable(jumping: int, steps: int) -> Contradiction | None:
-    """Say whether too many of the steps between poses jump further than the robot can have moved."""
-    if steps < _FEW_STEPS or jumping <= _MOST_JUMPS * steps:
-        return None
-    return Contradiction(
-        "unreachable-poses",
-        "most poses are out of reach of the inputs",
-        ("check the units of poses (m, rad) and inputs (m/s, rad/s) and that their clocks agree",),
-    )
+class UnreachablePoses(Check):
+    """Poses that jump further than any robot moves."""
+
+    kind, family = "unreachable-poses", "poses"
+    means = "most poses are out of reach of the inputs"
+    shows = "more than 30 % of the steps between poses jump"
+    cure = "units of poses (m, rad) and inputs (m/s, rad/s); `--pose-clock-offset auto`"
+
+    def look(self, seen: Seen) -> Finding | None:
+        """Count what the gate of poses rejected."""
+        counts = seen.evidence.counts
+        return self.of(counts.outliers + counts.jumps, counts.accepted + counts.outliers)
+
+    @classmethod
+    def of(cls, jumping: int, steps: int) -> Finding | None:
+        """Say whether too many of the steps between poses jump further than the robot can have moved."""
+        if steps < _FEW_STEPS or jumping <= _MOST_JUMPS * steps:
+            return None
+        return cls.found(
+            "most poses are out of reach of the inputs",
+            "check the units of poses (m, rad) and inputs (m/s, rad/s) and that their clocks agree",
+            evidence=jumping / steps,
+        )
 
 
 _FINE = ("", "")
 
 
-def _units(a: Agreement, inputs: str) -> tuple[str, str]:
+def _units(a: Agreement, words: InputWords) -> tuple[str, str]:
     turns = a.turning > ENOUGH_TURN
     by_turn = turns and abs(a.yaw_degrees) > 0.6 and a.yaw_ratio_degrees > 6.0
     by_course = a.moving >= ENOUGH and a.course_degrees > 0.8 and a.course < 0.4
@@ -112,15 +148,18 @@ def _units(a: Agreement, inputs: str) -> tuple[str, str]:
         )
         return f"yaw looks like degrees ({ratio})", "convert the poses' angles to radians"
     if turns and abs(a.yaw_inputs) > 0.6 and not _LEAST_TURN < a.yaw_ratio < _MOST_TURN:
-        return _rates(a, inputs)
+        return _rates(a, words)
     if a.distance_v > 0.6 and a.distance_ratio > 30.0:
-        return f"poses move {a.distance_ratio:.0f} times further than the {inputs} say", "use metres and m/s"
+        return (
+            f"poses move {a.distance_ratio:.0f} times further than the {words.name} say",
+            "use metres and m/s",
+        )
     return _FINE
 
 
-def _rates(a: Agreement, inputs: str) -> tuple[str, str]:
+def _rates(a: Agreement, words: InputWords) -> tuple[str, str]:
     """Say how far yaw rates of the inputs, and their speeds with them, are off, and the option for that."""
-    option = {"commands": "--command-scale", "wheels": "--wheel-scale"}[inputs]
+    option, inputs = words.option, words.name
     moved, turned = a.distance_ratio, a.yaw_ratio
     if a.distance_v > 0.6 and not _LEAST_TURN < moved < _MOST_TURN:
         units = likely_speeds(moved)
@@ -143,12 +182,14 @@ def _rates(a: Agreement, inputs: str) -> tuple[str, str]:
     )
 
 
-def _swapped(a: Agreement, inputs: str) -> tuple[str, str]:
+def _swapped(a: Agreement, words: InputWords) -> tuple[str, str]:
     by_distance = a.distance_omega > max(0.7, a.distance_v + 0.1)
     by_turn = abs(a.yaw_v) > max(0.55, abs(a.yaw_inputs) + 0.2)
     if by_distance and by_turn and a.turning > ENOUGH_TURN:
-        what = f"columns look swapped: v and omega of the {inputs}"
-        return what, "distances follow omega and turns follow v; exchange the two columns"
+        what = f"columns look swapped: v and omega of the {words.name}"
+        advice = "distances follow omega and turns follow v; exchange the two columns"
+        sides = ", or correct the sign of the wheels of one side, which count backwards"
+        return what, advice + (sides if words.input_name == "wheel" else "")
     if a.moving >= ENOUGH and a.course < 0.3 and a.course_mirrored < -0.7:
         if a.yaw_inputs < -0.5:
             return "yaw looks like a compass heading", "use yaw = pi/2 - heading, counter-clockwise from x"
@@ -160,17 +201,20 @@ def _swapped(a: Agreement, inputs: str) -> tuple[str, str]:
     return _FINE
 
 
-def _mirrored(a: Agreement) -> tuple[str, str]:
+def _mirrored(a: Agreement, words: InputWords, *, alone: bool) -> tuple[str, str]:
+    """Say what turns against what; `alone`: the other input turns with the poses."""
     if a.moving >= ENOUGH and a.course < 0.3 and a.course_mirrored > 0.7:
         return "yaw runs clockwise while x and y do not", "change the sign of yaw"
-    if a.turning > ENOUGH_TURN and a.yaw_inputs < -0.5:
-        if a.course > 0.5:
-            advice = (
-                "poses are in a frame with z down: change the signs of y and yaw (x forward, y left, z up)"
-            )
-            return "poses turn against the inputs", advice
-        return "poses turn against the inputs", "check the sign of yaw and omega: both are counter-clockwise"
-    return _FINE
+    if a.turning <= ENOUGH_TURN or a.yaw_inputs >= -_TURN_TOGETHER:
+        return _FINE
+    swapped = "left and right are swapped, or " if words.input_name == "wheel" else ""
+    sign = f"{swapped}the sign of omega is flipped: give {words.option} 1,-1"
+    if alone:
+        return f"poses turn against the {words.name}", sign
+    frame = "check the sign of yaw: it is counter-clockwise"
+    if a.course > 0.5:
+        frame = "poses are in a frame with z down: change the signs of y and yaw (x forward, y left, z up)"
+    return "poses turn against the inputs", f"{frame}; or {sign}"
 
 
 def _correlation(a: Floats, b: Floats) -> float:

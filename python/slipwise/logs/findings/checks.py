@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The list of all checks, and what they find in a log or in what a learner was given so far."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from slipwise import _core
+from slipwise.logs.findings.clocks import CLOCKS
+from slipwise.logs.findings.command_stops import CommandTimeout
+from slipwise.logs.findings.course_heading import CourseHeading
+from slipwise.logs.findings.encoders import WheelSpikes
+from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.findings.gyro_turns import GyroTurnsOtherwise
+from slipwise.logs.findings.headings import (
+    BackwardPoses,
+    ConstantHeading,
+    HeadingJump,
+    LostHeading,
+    TurnedPoses,
+    UnlikelySpeed,
+)
+from slipwise.logs.findings.plausibility import ENOUGH, ENOUGH_TURN, Implausible, UnreachablePoses
+from slipwise.logs.findings.readings import READINGS
+from slipwise.logs.findings.repeated_wheels import RepeatedWheels
+from slipwise.logs.findings.seen import Seen, WholeLog
+from slipwise.logs.findings.standstill import DoesNotMove
+from slipwise.logs.findings.topics import TOPICS, ArmJoints
+from slipwise.logs.held import UNKNOWN_AFTER
+from slipwise.logs.log import Log, Run, has_course
+from slipwise.logs.motion_windows import evidence_of
+
+_LONG = 4  # times as many windows suffice of a robot that hardly turns, or only turns
+
+#: What else looks wrong follows from these.
+FIRST: tuple[Check, ...] = (Implausible(), UnreachablePoses())
+#: In the order in which they are looked for: what explains others comes before them.
+THEN: tuple[Check, ...] = (
+    UnlikelySpeed(),
+    DoesNotMove(),
+    GyroTurnsOtherwise(),
+    CourseHeading(),
+    TurnedPoses(),
+    BackwardPoses(),
+    ConstantHeading(),
+    HeadingJump(),
+    LostHeading(),
+    RepeatedWheels(),
+)
+#: What only a whole log shows.
+WHOLE: tuple[Check, ...] = (GyroTurnsOtherwise(), CommandTimeout(), ArmJoints(), WheelSpikes())
+#: Each once, also what readers and live nodes find.
+EVERY: tuple[Check, ...] = tuple(
+    {c.kind: c for c in (*FIRST, *THEN, *WHOLE, *CLOCKS, *TOPICS, *READINGS)}.values()
+)
+
+
+def findings_in(seen: Seen) -> tuple[Finding, ...]:
+    """Return what was found to be wrong, in all that was driven or lately.
+
+    An hour of good driving hides a localiser that freezes or a sign that flips: the last two minutes of
+    driving are judged by the same rules.
+    """
+    found = _found_in_part(seen)
+    recent = seen.evidence.recent if isinstance(seen.evidence, _core.MotionEvidence) else None
+    if recent is None or any(each.spoils for each in found):
+        return found
+    lately = _found_in_part(replace(seen, evidence=recent))
+    spoilt = tuple(_lately(each) for each in lately if each.spoils)
+    kinds = {each.kind for each in spoilt}
+    return (*spoilt, *(each for each in found if each.kind not in kinds))
+
+
+def _lately(found: Finding) -> Finding:
+    """Say that it is so of the last minutes alone."""
+    advice = (*found.advice, "All before agrees: --end leaves out what followed, where it is a log.")
+    return replace(found, sentence=f"in the last two minutes of driving, {found.sentence}", advice=advice)
+
+
+def _found_in_part(seen: Seen) -> tuple[Finding, ...]:
+    """Return what the checks find in one part of what was driven."""
+    for check in FIRST:
+        wrong = check.look(seen)
+        if wrong is not None:
+            return (wrong,)
+    found: list[Finding] = []
+    for check in THEN:
+        if not any(each.spoils and each.kind in check.explained_by for each in found):
+            seen_now = check.look(seen)
+            found += [] if seen_now is None else [seen_now]
+    return tuple(found)
+
+
+def not_shown_yet(seen: Seen) -> str:
+    """Say what is missing until a contradiction would have shown itself; empty where nothing is."""
+    if not len(seen.evidence.measured_windows) and len(seen.evidence.gyro_turns):  # a gyro alone
+        seconds = int(seen.evidence.gyro_turns[:, 1].sum())
+        return "" if seconds >= ENOUGH else f"the gyro was compared over {seconds} of {ENOUGH} s of turns"
+    found = seen.agreement(seen.input_name)
+    if found.windows >= _LONG * ENOUGH:
+        return ""
+    windows = found.windows if seen.positions else min(found.windows, found.moving)
+    if windows < ENOUGH:
+        return f"poses were compared with {seen.words.name} over {windows} of {ENOUGH} stretches of 1.5 s"
+    if found.turning < ENOUGH_TURN:
+        return f"the robot was turned by {found.turning:.1f} of {ENOUGH_TURN:g} rad"
+    return ""
+
+
+def findings_of(
+    log: Log, input_name: str, unknown_after: float = UNKNOWN_AFTER, *, sensor_yaw: float = 0.0
+) -> tuple[Finding, ...]:
+    """Return what is wrong with poses and inputs of a log, where no learner has taken it.
+
+    Args:
+        log: what `open_log` returned.
+        input_name: "command" or "wheel", the input that is learned from.
+        unknown_after: an input is unknown once it is older than this [s].
+        sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
+    """
+    runs = [run for run in log.runs if has_input(run, input_name)]
+    seen = Seen(
+        evidence=evidence_of(runs, unknown_after),
+        runs=[run.name for run in runs],
+        input_name=input_name,
+        positions=has_course(log.runs),
+        gyro=False,
+        sensor_yaw=sensor_yaw,
+    )
+    return (*findings_in(seen), *findings_of_log(WholeLog(log, input_name, unknown_after)))
+
+
+def findings_of_log(whole: WholeLog) -> tuple[Finding, ...]:
+    """Return what only whoever has the whole log knows, such as how commands end."""
+    looked = (check.look_at(whole) for check in WHOLE)
+    return tuple(found for found in looked if found is not None)
+
+
+def has_input(run: Run, input_name: str) -> bool:
+    """Whether a run has poses and an input of this kind."""
+    inputs = run.commands if input_name == "command" else run.wheels
+    return inputs is not None and len(inputs) > 0 and len(run.poses) > 0

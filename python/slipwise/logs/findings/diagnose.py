@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Everything that is wrong in a log: what its reader found, and what poses and either input show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from slipwise.addresses import shown
+from slipwise.logs.findings.checks import findings_of
+from slipwise.logs.findings.finding import Finding, RefusedLogError
+from slipwise.logs.held import UNKNOWN_AFTER
+from slipwise.logs.log import Log
+from slipwise.logs.open_log import open_log
+from slipwise.logs.options import LogOptions
+
+_OF_AN_INPUT = ("unlikely-speed",)  # said of commands and of wheels; of other kinds one tells the other
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What was found in one log."""
+
+    path: str
+    found: tuple[Finding, ...]
+    log: Log | None  # None where it is refused for what was found
+
+
+def diagnose(path: str | Path, options: LogOptions, *, sensor_yaw: float = 0.0) -> Diagnosis:
+    """Read a log and say what is wrong with it.
+
+    Args:
+        path: as for `open_log`.
+        options: as for `open_log`.
+        sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
+
+    Raises:
+        LogError: the file is missing, damaged or of an unknown kind, or makes no log.
+    """
+    try:
+        log = open_log(path, options=options)
+    except RefusedLogError as refused:
+        return Diagnosis(shown(Path(path)), (refused.found,), None)
+    return Diagnosis(shown(Path(path)), diagnose_log(log, options.unknown_after, sensor_yaw=sensor_yaw), log)
+
+
+def diagnose_log(
+    log: Log, unknown_after: float = UNKNOWN_AFTER, *, sensor_yaw: float = 0.0
+) -> tuple[Finding, ...]:
+    """Return all that is wrong in a log, each kind of thing once.
+
+    Args:
+        log: what `open_log` returned.
+        unknown_after: an input is unknown once it is older than this [s].
+        sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
+    """
+    found = list(log.found)
+    for name in ("command", "wheel"):
+        inputs = [run.commands if name == "command" else run.wheels for run in log.runs]
+        if any(inputs):
+            found += findings_of(log, name, unknown_after, sensor_yaw=sensor_yaw)
+    return each_once(found)
+
+
+def each_once(found: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Return one finding of each kind; of kinds that concern one input alone, each sentence."""
+    first: dict[tuple[str, str], Finding] = {}
+    for each in found:
+        apart = each.kind in _OF_AN_INPUT
+        first.setdefault((each.kind, each.sentence if apart else ""), each)
+    return tuple(first.values())

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What readers find to be wrong with numbers: units of time and angles, the mounting of a sensor, spikes."""
+
+from __future__ import annotations
+
+from slipwise.logs.findings.finding import Check, Finding
+
+
+class NotInSeconds(Check):
+    """Stamps in another unit than seconds, or that are no times."""
+
+    kind, family = "not-in-seconds", "clocks"
+    means = "stamps are in ms, us or ns, or do not go forward"
+    shows = "poses are more than 10 s apart, or ten times as many out of order as in order"
+    cure = "convert the column `t` to seconds"
+
+
+class AbsurdSpeeds(Check):
+    """Inputs most of which no ground robot has."""
+
+    kind, family = "absurd-speeds", "signs and units"
+    means = "speeds are in rpm, ticks or mm/s"
+    shows = "a tenth of the samples is faster than 100 m/s or rad/s, and far beyond the others"
+    cure = "convert speeds to m/s and yaw rates to rad/s"
+
+
+class TiltInDegrees(Check):
+    """Roll and pitch in degrees."""
+
+    kind, family = "tilt-in-degrees", "signs and units"
+    means = "roll and pitch are in degrees"
+    shows = "as radians the robot would tumble; as degrees it stays below 60"
+    cure = "convert them to radians"
+
+    @classmethod
+    def of(cls, largest: float) -> Finding:
+        """Say how large they get."""
+        return cls.found(
+            f"roll and pitch look like degrees (up to {largest:.3g}: as radians the robot would tumble)",
+            "convert the poses' angles to radians",
+            evidence=largest,
+        )
+
+
+class TiltedSensor(Check):
+    """A sensor of roll and pitch on its side or upside down."""
+
+    kind, family, spoils = "tilted-sensor", "signs and units", False
+    means = "the IMU sits on its side or upside down: its mounting, and no robot on its side"
+    shows = "the mean direction that is up"
+    cure = "none: it is taken out; correct the static transform from `base_link` to the IMU"
+
+    @classmethod
+    def of(cls, sentence: str) -> Finding:
+        """Say it in these words."""
+        return cls.found(sentence, "Correct the static transform from base_link to the sensor.")
+
+
+READINGS: tuple[Check, ...] = (NotInSeconds(), AbsurdSpeeds(), TiltInDegrees(), TiltedSensor())
