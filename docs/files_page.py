@@ -19,6 +19,7 @@ TOPS = (
     ("packages/slipwise-sim/slipwise_sim",),
     ("packages/slipwise-thesis/cpp",),
     ("packages/slipwise-thesis/slipwise_thesis",),
+    ("ros",),
     ("tools",),
     ("examples",),
 )

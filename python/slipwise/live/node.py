@@ -228,7 +228,8 @@ class LiveNode:
         self._given = (model, which)
         parts.intake.surfaces.look_again()
         text = f"# slipwise live, {parts.who.vehicle}, stamp {t:.3f} s: {which}\n{model.to_yaml()}"
-        self._publish(ModelText(t, text))
+        who, validity = parts.who.vehicle, parts.learning.validity.whole
+        self._publish(ModelText(t, text, model, who, which, validity))
 
     def _say_held(self, t: float, applied: AppliedModel) -> None:
         said = self._parts.said

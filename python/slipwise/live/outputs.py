@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.calibration.learned_sequence import SurfaceSummary
+from slipwise.models import Model
 
 Floats = NDArray[np.float64]
 Validity = Literal["unestimated", "estimated", "invalid"]
@@ -129,7 +130,7 @@ class SurfaceNow:
 
 @dataclass(frozen=True, eq=False)
 class Status:
-    """The state of the node, `~/diagnostics`: a new one several times a second."""
+    """The state of the node, `~/diagnostics` and `~/slip_state`: a new one several times a second."""
 
     t: float  # s, stamp of the newest measurement
     vehicle: str
@@ -155,10 +156,14 @@ class Status:
 
 @dataclass(frozen=True)
 class ModelText:
-    """The model file as text, `~/model` (latched)."""
+    """The model file as text, `~/model`, and its numbers, `~/motion_model` (both latched)."""
 
     t: float  # s
     text: str
+    model: Model | None = None  # whose numbers are given too
+    vehicle: str = ""
+    given: str = ""  # which model it is, in words
+    validity: Validity = "unestimated"
 
 
 @dataclass(frozen=True)

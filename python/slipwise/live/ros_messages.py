@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from slipwise.live.diagnostics import Diagnostic, diagnostics_of, note_diagnostic
+from slipwise.live.odometry import CHILD_FRAME
 from slipwise.live.outputs import (
     AppliedParameters,
     Floats,
@@ -26,6 +27,7 @@ from slipwise.live.outputs import (
     next_moves_content,
     surface_content,
 )
+from slipwise.live.typed_messages import MOTION_MODEL, SLIP_STATE, motion_model, slip_state
 from slipwise.live.wires.ros_types import ros_types
 
 if TYPE_CHECKING:
@@ -36,6 +38,8 @@ TWIST = "geometry_msgs/msg/TwistWithCovarianceStamped"
 PATH = "nav_msgs/msg/Path"
 DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 STRING = "std_msgs/msg/String"
+
+_STAMPED = 12  # bytes of a message up to the end of its header's stamp
 
 _LATEST = 2**31 - 1  # s; a header's stamp holds no later second
 _PLANE = np.array([0, 1, 5])  # x, y, yaw among the six of a ROS covariance
@@ -62,6 +66,8 @@ TOPICS: Mapping[str, RosTopic] = {
     "surface": RosTopic(STRING, latched=True),
     "surface_json": RosTopic(STRING, latched=True),
     "next_moves": RosTopic(STRING, latched=True),
+    "motion_model": RosTopic(MOTION_MODEL, latched=True),
+    "slip_state": RosTopic(SLIP_STATE, latched=True),
 }
 
 
@@ -96,6 +102,7 @@ class RosMessages:
         self.store: Typestore = ros_types()
         self._name = name
         self._surface_name: str | None = None  # that was said
+        self._slip_state = b""  # the same, without its stamp
         types: dict[str, Callable[..., Any]] = dict(self.store.types)
         self._types = types
         self._time, self._header = types["builtin_interfaces/msg/Time"], types["std_msgs/msg/Header"]
@@ -114,7 +121,7 @@ class RosMessages:
         Args:
             output: what the node gives.
             wanted: whether a subscriber is on a topic of TOPICS; where not, what comes again and again is
-                left out: odometry, twist and the path of the present command.
+                left out: odometry, twist, the path of the present command and diagnostics.
         """
         match output:
             case Odometry():
@@ -122,13 +129,13 @@ class RosMessages:
             case Path():
                 return self._path(output) if output.asked or wanted("predicted_path") else []
             case Status():
-                return [self._diagnostics(output.t, diagnostics_of(output, self._name), output.vehicle)]
+                return self._status(output, wanted)
             case SurfaceNow():
                 return self._surface(output)
             case NextMovesNow():
                 return [self._string("next_moves", output.t, json.dumps(next_moves_content(output)))]
             case ModelText():
-                return [self._string("model", output.t, output.text)]
+                return self._model(output)
             case Note():
                 return [self._diagnostics(output.t, (note_diagnostic(output, self._name),), "")]
             case AppliedParameters():
@@ -165,6 +172,25 @@ class RosMessages:
             return [self._message("predicted_path", first, message)]
         whole = self._string("prediction_json", first / 1e9, prediction_json(path))
         return [self._message("prediction", first, message), whole]
+
+    def _model(self, said: ModelText) -> list[RosMessage]:
+        found, stamp = [self._string("model", said.t, said.text)], stamp_ns(said.t)
+        if said.model is not None:
+            message = motion_model(self._types, said, said.model, self._head(stamp, CHILD_FRAME), _text)
+            found.append(self._message("motion_model", stamp, message))
+        return found
+
+    def _status(self, status: Status, wanted: Callable[[str], bool]) -> list[RosMessage]:
+        """Diagnostics come again and again, the slip state where it has changed."""
+        stamp, found = stamp_ns(status.t), []
+        if wanted("diagnostics"):
+            found.append(self._diagnostics(status.t, diagnostics_of(status, self._name), status.vehicle))
+        content = slip_state(self._types, status, self._head(stamp, CHILD_FRAME), _text)
+        state = self._message("slip_state", stamp, content)
+        if state.payload[_STAMPED:] != self._slip_state:
+            self._slip_state = state.payload[_STAMPED:]
+            found.append(state)
+        return found
 
     def _diagnostics(self, t: float, diagnostics: tuple[Diagnostic, ...], vehicle: str) -> RosMessage:
         stamp = stamp_ns(t)

@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from slipwise.errors import SlipwiseError
@@ -16,12 +17,12 @@ from slipwise.live.cdr_reader import reader_of
 from slipwise.live.listeners import Listeners
 from slipwise.live.node_parameters import NodeParameters
 from slipwise.live.outputs import AppliedParameters, Output, Status
-from slipwise.live.ros_messages import TOPICS, RosMessages
+from slipwise.live.ros_messages import TOPICS, RosMessages, RosTopic
 from slipwise.live.ros_samples import FixPoses, ToPose, to_command, to_gyro, to_pose, to_wheels
 from slipwise.live.samples import Override, Pose, Request, SurfaceCue, Unusable
 from slipwise.live.stamps import Stamps
 from slipwise.live.transport import OnSample
-from slipwise.live.wires.ros_types import ros_types
+from slipwise.live.wires.ros_types import OWN_PACKAGE, ros_types
 from slipwise.live.wires.wire import RosWire
 from slipwise.logs.messages import IMU, NAV_SAT_FIX
 from slipwise.logs.options import LogOptions
@@ -76,6 +77,7 @@ class RosTransport:
         self._stamps = Stamps("" if roles.pose is None else roles.pose.name, self._notices.put)
         self._calls: queue.SimpleQueue[AppliedParameters | None] = queue.SimpleQueue()
         self._caller = threading.Thread(target=self._call_nodes, name="parameters", daemon=True)
+        self._unknown: set[str] = set()  # topics whose types this ROS does not have
         self._closed = False
         self._said, self._said_at = ("", ""), -DIAGNOSTICS_EVERY
 
@@ -86,7 +88,7 @@ class RosTransport:
             SlipwiseError: a topic cannot be used.
         """
         for topic, about in TOPICS.items():
-            self._wire.advertise(self._full(topic), about.type, latched=about.latched)
+            self._advertise(topic, about)
         if any(topic.name == CLOCK for topic in self._wire.topics()):
             self._stamps.simulated = True
             self._notices.put("stamps without a header are those of /clock")
@@ -115,13 +117,26 @@ class RosTransport:
         if isinstance(output, AppliedParameters):
             self._calls.put(output)
             return
-        if isinstance(output, Status) and not (self._heard("diagnostics") and self._is_news(output)):
-            return
-        for message in self._messages.of(output, self._heard):
+        for message in self._messages.of(output, partial(self._wanted, output)):
+            if message.topic in self._unknown:
+                continue
             with contextlib.suppress(SlipwiseError):
                 self._wire.publish(
                     self._full(message.topic), message.type, message.payload, latched=message.latched
                 )
+
+    def _wanted(self, output: Output, topic: str) -> bool:
+        return self._heard(topic) and (not isinstance(output, Status) or self._is_news(output))
+
+    def _advertise(self, topic: str, about: RosTopic) -> None:
+        """Announce a topic; a ROS without slipwise_msgs does without what needs them, and that is said."""
+        try:
+            self._wire.advertise(self._full(topic), about.type, latched=about.latched)
+        except SlipwiseError as problem:
+            if not about.type.startswith(OWN_PACKAGE):
+                raise
+            self._unknown.add(topic)
+            self._notices.put(f"{self._full(topic)} is not published: {problem}")
 
     def _is_news(self, status: Status) -> bool:
         """Diagnostics come once a second, as is usual in ROS, or where something changed."""

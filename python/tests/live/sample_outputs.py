@@ -156,7 +156,8 @@ def _driven(run: Run) -> Iterator[Output]:
                 counts={"standstill": i // 200, "pose jumps": i // 500, "late input": i // 300},
             )
     yield surface_at()
-    yield ModelText(float(c.t[-1]), "schema: 1\n")
+    assert model is not None
+    yield ModelText(float(c.t[-1]), model.to_yaml(), model, VEHICLE, "valid", "estimated")
 
 
 def _from(pose: Floats, path: PredictedPath) -> Path:

@@ -8,7 +8,9 @@ from collections.abc import Callable
 import pytest
 from live.sample_outputs import next_moves, odometry_at, straight_path, surface_at, waiting_status
 
+from slipwise.errors import SettingsError
 from slipwise.live.outputs import ModelText, Note
+from slipwise.live.ros_messages import TOPICS
 from slipwise.live.ros_samples import to_pose, to_wheels
 from slipwise.live.ros_transport import CueTopics, RosTransport
 from slipwise.live.samples import Pose, Sample, SurfaceCue, Unusable, Wheels
@@ -20,7 +22,7 @@ from slipwise.logs.role_choice import Topic
 from slipwise.logs.topics import Roles
 
 CHOSEN = Topic("/odom", ODOMETRY, 1)
-LATCHED = ("model", "surface", "surface_json", "next_moves")
+LATCHED = {name for name, topic in TOPICS.items() if topic.latched}
 
 
 class Wire:
@@ -73,7 +75,8 @@ def test_where_nobody_listens_only_what_comes_once_is_published() -> None:
     transport = transport_on(wire)
     for output in (odometry_at(1.0), straight_path(), waiting_status()):
         transport.publish(output)
-    assert wire.published == []
+    assert wire.published == ["slip_state"]
+    wire.published.clear()
     for once in (ModelText(1.0, "x: 1"), Note(1.0, "said"), straight_path(asked=True), surface_at()):
         transport.publish(once)
     transport.publish(next_moves())
@@ -94,7 +97,28 @@ def test_who_listens_to_a_topic_hears_that_one(topic: str) -> None:
     transport = transport_on(wire)
     for output in (odometry_at(1.0), straight_path(), waiting_status()):
         transport.publish(output)
-    assert wire.published == [topic]
+    assert [each for each in wire.published if each != "slip_state"] == [topic]
+
+
+def test_a_ros_without_slipwise_msgs_is_said_and_gets_the_rest() -> None:
+    wire = Wire("diagnostics")
+    own = wire.advertise
+
+    def advertise(topic: str, kind: str, *, latched: bool = False) -> None:
+        if kind.startswith("slipwise_msgs"):
+            raise SettingsError(f'there is no message type "{kind}" in this ROS')
+        own(topic, kind, latched=latched)
+
+    wire.advertise = advertise  # type: ignore[method-assign]
+    transport = transport_on(wire)
+    transport.subscribe(lambda _sample: None)
+    transport.publish(waiting_status())
+    assert wire.published == ["diagnostics"]
+    assert [note.split(" is not")[0] for note in transport.notices()] == [
+        "/slipwise/motion_model",
+        "/slipwise/slip_state",
+    ]
+    transport.close()
 
 
 def test_an_odometry_that_is_wheels_and_pose_gives_both_as_decoding_in_full_does() -> None:

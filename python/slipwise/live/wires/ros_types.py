@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from functools import cache
+from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from slipwise.errors import SettingsError
@@ -27,6 +28,7 @@ _SERVICES: dict[str, tuple[dict[str, str], dict[str, str]]] = {
     ),
     "std_srvs/srv/Trigger": ({}, {"success": "bool", "message": "string"}),
 }
+OWN_PACKAGE = "slipwise_msgs"
 _EVENT_INFO = "service_msgs/msg/ServiceEventInfo"
 
 
@@ -70,7 +72,19 @@ def ros_types() -> Typestore:
             for name, fields in missing.items()
         }
     )
+    store.register(_own_types())
     return store
+
+
+def _own_types() -> dict[str, Any]:
+    """Return the messages of slipwise's own, whose files are those of the ROS package slipwise_msgs."""
+    from rosbags.typesys import get_types_from_msg
+
+    found: dict[str, Any] = {}
+    for file in files("slipwise.live").joinpath("messages").iterdir():
+        text = file.read_text(encoding="utf-8")
+        found |= get_types_from_msg(text, f"{OWN_PACKAGE}/msg/{file.name.removesuffix('.msg')}")
+    return found
 
 
 def _field(text: str) -> Any:
