@@ -95,6 +95,10 @@ def export(
         optional("NAME=VALUE", "The autopilot's parameter while the log was recorded; repeatable."),
     ] = None,
     surface: Annotated[str | None, optional("NAME", "One of the surfaces that the model remembers.")] = None,
+    merge: Annotated[
+        Path | None,
+        optional("FILE", "Your parameter file: show what changes in it; -o writes it, comments kept."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Export a model with a bad verdict, too.")] = False,
     json: Json = None,
 ) -> int:
@@ -108,11 +112,13 @@ def export(
       slipwise export model.yaml --to diff-drive --ros-distro jazzy -o diff_drive_controller.yaml
       slipwise export model.yaml --to all --ros-distro lyrical -o config/ --wheel-separation 0.57
       slipwise export commands.yaml --to mppi --ros-distro kilted --limits
+      slipwise export model.yaml --merge nav2_params.yaml --ros-distro jazzy -o nav2_params.yaml
       slipwise export model.yaml --px4 1.17 -o rover.params
       slipwise export commands.yaml --ardupilot 4.6 --logged ATC_STR_RAT_FF=0.2
       slipwise export model.yaml --to c-header -o model.h --json -
     """  # noqa: D301
     from slipwise.cli.bad_verdict import say_refused
+    from slipwise.cli.export_merge import merge_into
     from slipwise.cli.output import Output
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.export import ExportOptions
@@ -139,11 +145,15 @@ def export(
         ardupilot=ardupilot,
         logged=_logged(logged or []),
     )
-    target = to or _of_firmware(px4, ardupilot)
+    no_target = merge is not None and px4 is None and ardupilot is None
+    target = to or (TargetName.all if no_target else _of_firmware(px4, ardupilot))
     learned = load_model(model) if surface is None else on_surface(load_model(model), surface)
     if not learned.content.verdict.good and not force:
         say_refused(out, learned, "export")
         return 1
+    if merge is not None:
+        files = (merge, None if output == Path() else output)
+        return merge_into(out, learned, model.name, target.value, options, files)
     made = _make(learned, model.name, target, options)
     paths = _paths(made, output, target)
     refuse_unwritable(*paths.values(), out.written_file, inputs=[model])

@@ -102,11 +102,20 @@ def amcl(model: Model, options: ExportOptions) -> ParameterFile:
             ("robot_model_type",),
             _OMNI if options.omni else _DIFFERENTIAL,
             "the sample model that they are for",
+            supposed=True,
         ),
         Entry(
-            ("update_min_d",), UPDATE_DISTANCE, "[m] AMCL's default; the alphas hold for this distance only"
+            ("update_min_d",),
+            UPDATE_DISTANCE,
+            "[m] AMCL's default; the alphas hold for this distance only",
+            supposed=True,
         ),
-        Entry(("update_min_a",), UPDATE_ANGLE, "[rad] AMCL's default; the alphas hold for this angle only"),
+        Entry(
+            ("update_min_a",),
+            UPDATE_ANGLE,
+            "[rad] AMCL's default; the alphas hold for this angle only",
+            supposed=True,
+        ),
         *(entry if options.small_alphas else _not_small(entry) for entry in alphas_learned),
     ]
     return ParameterFile(

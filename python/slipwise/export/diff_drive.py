@@ -90,7 +90,7 @@ def _geometry(found: WheelMultipliers, options: ExportOptions, model: Model) -> 
     separation = (
         []
         if options.wheel_separation is None
-        else [Entry(("wheel_separation",), options.wheel_separation, "[m] nominal, as given")]
+        else [Entry(("wheel_separation",), options.wheel_separation, "[m] nominal, as given", supposed=True)]
     )
     named = (
         ("wheel_separation_multiplier", found.separation, ""),
@@ -108,7 +108,8 @@ def _rate(options: ExportOptions, distro: str) -> tuple[float | None, list[Entry
     if "publish_rate" not in DIFF_DRIVE.of_distro(distro):
         return options.update_rate, []
     rate = PUBLISH_RATE if options.update_rate is None else min(PUBLISH_RATE, options.update_rate)
-    return rate, [Entry(("publish_rate",), rate, "[Hz] the twist's covariance below is for this rate")]
+    why = "[Hz] the twist's covariance below is for this rate"
+    return rate, [Entry(("publish_rate",), rate, why, supposed=True)]
 
 
 def _covariances(model: Model, options: ExportOptions, distro: str) -> list[Entry | Kept]:

@@ -85,10 +85,10 @@ def _kind(options: ExportOptions, distro: str) -> list[Entry]:
     kind = "diff-drive" if options.min_turning_radius is None else "ackermann"
     name, plugin = motion_model(kind, distro)
     if not plugin:
-        return [Entry(("motion_model",), name, "the kind of vehicle")]
+        return [Entry(("motion_model",), name, "the kind of vehicle", supposed=True)]
     return [
-        Entry(("motion_model",), name, "the plug-in below"),
-        Entry((name, "plugin"), plugin, "the kind of vehicle"),
+        Entry(("motion_model",), name, "the plug-in below", supposed=True),
+        Entry((name, "plugin"), plugin, "the kind of vehicle", supposed=True),
     ]
 
 

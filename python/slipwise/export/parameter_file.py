@@ -26,6 +26,7 @@ class Entry:
     key: tuple[str, ...]
     value: Value
     meaning: str
+    supposed: bool = False  # not learned: the other numbers are for a tool that is set up so
 
     @property
     def name(self) -> str:

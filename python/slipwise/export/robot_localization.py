@@ -37,10 +37,15 @@ def robot_localization(model: Model, options: ExportOptions) -> ParameterFile:
     drive = reference_drive(model)
     from_commands = model.content.input == "command"
     entries = [
-        Entry(("frequency",), FREQUENCY, "[Hz] the filter's default; the gains below stay below it"),
-        Entry(("two_d_mode",), True, "the model is planar"),
+        Entry(
+            ("frequency",),
+            FREQUENCY,
+            "[Hz] the filter's default; the gains below stay below it",
+            supposed=True,
+        ),
+        Entry(("two_d_mode",), True, "the model is planar", supposed=True),
         *_process_noise(model, drive, options.horizon),
-        *(_control(model, options) if from_commands else [Entry(("use_control",), False, _NO_CONTROL)]),
+        *(_control(model, options) if from_commands else [_WITHOUT_CONTROL]),
     ]
     return ParameterFile(
         node="ekf_filter_node",
@@ -56,7 +61,12 @@ def robot_localization(model: Model, options: ExportOptions) -> ParameterFile:
 _NOT_TWICE = """\
 The slip noise stands in the process noise of x, y and yaw. If the odometry's twist covariance already holds
 it (diff_drive_controller.yaml), use one of the two, or it counts twice."""
-_NO_CONTROL = "this model is from wheel speeds: it does not know how the robot answers commands"
+_WITHOUT_CONTROL = Entry(
+    ("use_control",),
+    False,
+    "this model is from wheel speeds: it does not know how the robot answers commands",
+    supposed=True,
+)
 
 
 def _process_noise(model: Model, drive: ReferenceDrive, horizon: float) -> list[Entry]:

@@ -29,6 +29,7 @@ class Exported:
     text: str
     values: dict[str, Value]
     kept: dict[str, str] = field(default_factory=dict)
+    parameters: ParameterFile | None = None  # of a ROS node
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Target:
 def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callable[..., Exported]:
     def write(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
         file = make(model.body, options)
-        return Exported(file.text(origin), file.values(), file.kept())
+        return Exported(file.text(origin), file.values(), file.kept(), file)
 
     return write
 

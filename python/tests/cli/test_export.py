@@ -168,3 +168,28 @@ def test_files_that_are_there_are_replaced_whole(slipwise: Slipwise, wheel: Path
     text = Path("model.h").read_text()
     assert "old\n" not in text
     assert text.endswith("#endif /* SLIPWISE_MODEL_H */\n")
+
+
+def test_a_file_of_nav2_is_shown_and_written(slipwise: Slipwise, folder: Path) -> None:
+    model = make_model(replace(WHEEL, commands=True)).save(folder / "command.yaml")
+    users = folder / "nav2.yaml"
+    users.write_text(
+        "controller_server:\n  ros__parameters:\n    Follow:  # ours\n"
+        '      plugin: "nav2_mppi_controller::MPPIController"\n      model_delay_vx: 0.1 # guessed\n'
+    )
+    before = users.read_text()
+    options = ("export", model, "--merge", users, "--ros-distro", "lyrical")
+    result = slipwise(*options)
+    assert (result.code, result.err, users.read_text()) == (0, "", before)
+    assert "Nothing was written: name the file with -o." in result.out
+    assert "robot-localization skipped: no node in it could be ekf_filter_node" in result.out
+    document = json.loads(slipwise(*options, "-o", users, "--json", "-").out)
+    changes = {each["parameter"]: (each["old"], each["new"]) for each in document["changes"]}
+    assert changes["Follow.model_delay_vx"] == ("0.1", "0.5")
+    assert users.read_text().startswith(before.replace("0.1 # guessed", "0.5 # guessed"))
+    assert (
+        yaml.safe_load(users.read_text())["controller_server"]["ros__parameters"]["Follow"]["model_delay_wz"]
+        == 0.5
+    )
+    assert slipwise("export", model, "--to", "c-header", "--merge", users).code == 2
+    assert left_in(folder) == {"command.yaml", "nav2.yaml"}
