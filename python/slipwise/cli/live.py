@@ -94,6 +94,7 @@ def live(
         live_settings,
         model_of_replay,
         open_robot,
+        settled,
         watchers_for,
         with_memory,
     )
@@ -119,12 +120,7 @@ def live(
     with stopped_by_signals() as stopping:
         source = Source(replay, demo, rate, results)
         robot = open_robot(chosen, log_options, source, say=shown.say)
-        if log_options.car is not None:  # commands are throttle and steering
-            chosen = live_settings(chosen, {"vehicle": log_options.vehicle})
-        elif log_options.wheelbase is not None:  # commands steer
-            chosen = live_settings(chosen, {"wheelbase": log_options.wheelbase})
-        if robot.coming is not None:
-            chosen = live_settings(chosen, robot.coming.settings())
+        chosen = settled(chosen, log_options, robot.coming)
         watchers = watchers_for(shown, chosen.live)
         timeout = None if robot.log is not None else log_options.command_timeout  # a log has it already
         built = build_node(

@@ -80,6 +80,19 @@ def live_settings(settings: Settings, given: Mapping[str, Any]) -> Settings:
     return settings.model_copy(update={"live": table})
 
 
+def settled(settings: Settings, options: LogOptions, coming: Coming | None) -> Settings:
+    """Return the settings with what the options say of the robot, and what is known to come.
+
+    Raises:
+        SettingsError: a value is impossible.
+    """
+    if options.car is not None:  # commands are throttle and steering
+        settings = live_settings(settings, {"vehicle": options.vehicle})
+    elif options.wheelbase is not None:  # commands steer
+        settings = live_settings(settings, {"wheelbase": options.wheelbase})
+    return settings if coming is None else live_settings(settings, coming.settings())
+
+
 def with_memory(settings: Settings) -> Settings:
     """Return the settings with which a memory of surfaces is continued.
 
@@ -161,48 +174,14 @@ def _of_lines(table: LiveTable, options: LogOptions, source: Source, say: Callab
 
 
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
-    from slipwise.calibration.coming import Coming
-    from slipwise.live.ros_roles import (
-        find_roles,
-        first_poses,
-        only_positions,
-        source_topics,
-        with_oriented_imu,
-    )
-    from slipwise.live.ros_transport import CueTopics, RosTransport
+    from slipwise.live.ros_robot import find_robot
     from slipwise.live.wires.make_wire import make_wire
     from slipwise.live.wires.options import WireOptions
 
     named = WireOptions(node_name=table.node, domain=table.domain, network=table.network)
     wire = make_wire(None if table.transport in (None, "ros") else table.transport, named)
-    try:
-        roles = find_roles(wire, options, say, own=f"/{table.node}")
-        roles = with_oriented_imu(wire, roles, say)
-        for note in roles.guessed:
-            say(str(note))
-        input_name = table.input or ("command" if roles.command is not None else "wheel")
-        say(f"learning from {input_name}s; the node is /{table.node}")
-        if only_positions(roles):
-            say("satellite fixes without an IMU: positions only, headings are the direction of the path")
-        seen = first_poses(wire, roles, say)
-        positions = only_positions(roles) or table.positions or seen.positions
-        cues = CueTopics(table.override_topic, table.surface_topic)
-        transport = RosTransport(wire, roles, options, name=table.node, cues=cues, headed=not positions)
-    except BaseException:
-        wire.close()
-        raise
-    return Robot(
-        transport,
-        input_name,
-        "live",
-        coming=Coming(
-            positions=positions,
-            gyro_alone=roles.pose is None,
-            sources=source_topics(roles),
-            attitude=seen.attitude,
-            sideways=options.sideways,
-        ),
-    )
+    found = find_robot(wire, table, options, say, name=table.node)
+    return Robot(found.transport, found.input_name, "live", coming=found.coming)
 
 
 def _results(path: Path | None) -> Any:

@@ -108,7 +108,7 @@ def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
     def wrapper(**given: Any) -> int:
         given.pop("help_log")
         chosen = {name: given.pop(name) for name in names}
-        options = _log_options(chosen, given.get("settings"), given.get("changes"))
+        options = log_options(chosen, given.get("settings"), given.get("changes"))
         return command(log_options=options, **given)
 
     added = [*map(_parameter, LOG_FIELDS), _help_log(names)]
@@ -178,7 +178,7 @@ def _help_log(names: Sequence[str]) -> inspect.Parameter:
     )
 
 
-def _log_options(given: dict[str, Any], file: Path | None, changes: Sequence[str] | None) -> LogOptions:
+def log_options(given: dict[str, Any], file: Path | None, changes: Sequence[str] | None) -> LogOptions:
     """Return the options of the command line, and for the others those of the settings."""
     from slipwise.logs import LogOptions
 

@@ -22,7 +22,8 @@ from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
 from slipwise.live.model_file import model_in, surfaces_before
 from slipwise.live.move_adviser import MoveAdviser
-from slipwise.live.node import LiveNode, NodeParts
+from slipwise.live.node import LiveNode
+from slipwise.live.node_parts import NodeParts
 from slipwise.live.said import Said
 from slipwise.live.samples import DriveStart
 from slipwise.live.status import Identity
@@ -49,6 +50,8 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     watchers: Sequence[Watcher] = (),
     run: str | None = None,
     command_timeout: float | None = None,
+    kept: Learning | None = None,
+    forget: bool = False,
 ) -> Built:
     """Return a node.
 
@@ -59,6 +62,8 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
         watchers: see all that the node gives.
         run: name of the run that begins; None: the transport says when one does.
         command_timeout: s after which the robot ends a command that is not repeated.
+        kept: what a node learned that has ended, and this one goes on with.
+        forget: set aside what the cache has, and learn from nothing.
 
     Raises:
         SettingsError: settings contradict themselves.
@@ -73,10 +78,12 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     cache, learner, valid = None, None, None
     if table.cache is not None:
         cache = Cache(Path(table.cache), CacheKey.of(table.name, input_name, settings))
-        found = cache.load()
+        found = cache.forget() if forget else cache.load()
         learner, valid = found.learner, found.valid
-        if found.said:
+        if found.said and kept is None:
             said.note(math.nan, found.said, error=learner is None)
+    if kept is not None:  # it knows all that the cache does
+        learner, valid = kept.learner, kept.valid
     if learner is None and table.memory and start is not None and before is None:
         said.note(math.nan, "the start model remembers no surfaces: the memory starts empty")
     learner = learner or _new_learner(input_name, settings, before, wheels=transport.wheels)

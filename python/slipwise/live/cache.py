@@ -132,6 +132,16 @@ class Cache:
             return Remembered(None, None, self._set_aside(f"the cache cannot be read: {problem}"))
         return Remembered(learner, valid, f"goes on from {self.state}")
 
+    def forget(self) -> Remembered:
+        """Set aside what is remembered.
+
+        Raises:
+            OutputError: it cannot be set aside, or another node has this cache.
+        """
+        self._hold()
+        there = self.state.exists()
+        return Remembered(None, None, self._set_aside("the cache is not wanted any more") if there else "")
+
     def works(self) -> None:
         """The node works with what was loaded: this start is over."""
         with contextlib.suppress(OSError):

@@ -45,6 +45,7 @@ class Gates:
     def __init__(self, rules: GateRules, *, input_name: str) -> None:
         self._rules, self._input = rules, Command if input_name == "command" else Wheels
         self._until: dict[str, float] = {}  # s, of each cause
+        self.frozen = False  # on request
         self._override = False
         self._last_input = -math.inf
         self._wheels = SourceWatch(FAR_TWIST, relative=0.1)
@@ -64,6 +65,8 @@ class Gates:
 
     def why(self, t: float) -> str:
         """Return why nothing is learned at a stamp [s]; empty where it is."""
+        if self.frozen:
+            return "it was asked to rest"
         if self._override:
             return "an operator drives"
         for cause, until in self._until.items():

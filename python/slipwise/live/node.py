@@ -3,35 +3,24 @@
 
 from __future__ import annotations
 
-import json
 import logging
 import math
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
 from slipwise.errors import SlipwiseError
-from slipwise.live.applied import AppliedModel, without_slip
-from slipwise.live.cache import Cache
-from slipwise.live.gates import Gates
-from slipwise.live.handover import Handover
-from slipwise.live.intake import Intake
-from slipwise.live.learning import Learning
-from slipwise.live.move_adviser import MoveAdviser
+from slipwise.live.giving import Giving
+from slipwise.live.node_parts import NodeParts
 from slipwise.live.odometry import odometry_of, path_ahead
-from slipwise.live.outputs import ModelText, Odometry, Output, ParameterNow, Path
-from slipwise.live.said import Said
-from slipwise.live.samples import Override, Pose, Request, RunStart, Sample, SurfaceCue, Unusable
-from slipwise.live.status import DrivenPath, Identity, Now, parameters_now, status_of
-from slipwise.live.transport import Transport
-from slipwise.live.validity import model_words
-from slipwise.live.watch.watcher import Watcher
-from slipwise.models import Model
+from slipwise.live.outputs import Odometry, Output, ParameterNow, Path
+from slipwise.live.requests import asked_commands
+from slipwise.live.samples import Answer, Override, Pose, Request, RunStart, Sample, SurfaceCue, Unusable
+from slipwise.live.status import DrivenPath, Now, parameters_now, status_of
 
 MOST_WAITING = 20_000  # samples; a transport waits beyond them
 AT_ONCE = 256  # samples between two looks at the clock
@@ -44,23 +33,6 @@ SAVE_EVERY = 60.0  # s of the wall clock: a minute of learning is lost at most
 AHEAD = 2.0  # s that the present command is predicted
 
 _log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class NodeParts:
-    """What a node is made of."""
-
-    who: Identity
-    transport: Transport
-    learning: Learning
-    intake: Intake
-    gates: Gates
-    said: Said
-    adviser: MoveAdviser
-    watchers: Sequence[Watcher] = ()
-    applied: AppliedModel | None = None
-    handover: Handover | None = None
-    cache: Cache | None = None
 
 
 class LiveNode:
@@ -76,9 +48,8 @@ class LiveNode:
         self._stuck = False
         self._parameters: tuple[ParameterNow, ...] = ()
         self._next = dict.fromkeys(("status", "notices", "save", "works"), 0.0)  # s of the wall clock
-        self._given: tuple[Model, str] | None = None  # the model that others have, and which it is
         self._unsaved: SlipwiseError | None = None  # why the state was not saved the last time
-        self._handed: Model | None = None  # what files and nodes were given
+        self._giving = Giving(parts, self._publish)
 
     def stop(self) -> None:
         """End the loop; may be called from any thread, or a signal."""
@@ -124,6 +95,10 @@ class LiveNode:
         while len(self._waiting) >= MOST_WAITING and not self._stopped.is_set():
             time.sleep(REST)
         self._waiting.append(sample)
+
+    def ask(self, request: Request) -> None:
+        """Ask for something; may be called from any thread."""
+        self._waiting.append(request)
 
     def _take_some(self) -> bool:
         """Take what waits, up to a number; return whether there was anything."""
@@ -181,7 +156,7 @@ class LiveNode:
         parts = self._parts
         parts.learning.learner.know_clocks(compared=parts.transport.clocks_compared)
         if parts.learning.judge(t, last=last):
-            self._publish_model(t)
+            self._giving.publish_model(t, stuck=self._stuck)
             self._parameters = parameters_now(parts.learning, parts.applied)
 
     def _publish_odometry(self, t: float) -> None:
@@ -209,88 +184,45 @@ class LiveNode:
         if surface is not None:
             self._publish(surface)
 
-    def _publish_model(self, t: float) -> None:
-        """Others get the newest valid model, the last valid one, or the start, whenever it is another."""
-        parts = self._parts
-        model, which = parts.learning.given()
-        if parts.applied is not None:
-            valid = None if self._stuck else parts.learning.valid_now
-            if parts.learning.contradicted:
-                self._withdraw(t, parts.learning.contradicted)
-            parts.applied.step(t, valid, parts.learning.validity.of)
-            self._say_held(t, parts.applied)
-            if parts.who.apply == "auto" and valid is not None and parts.applied.due(t, valid):
-                self._hand_on(t)
-        if model is None and self._given is not None:  # it was withdrawn, and there is no start model
-            model = self._given[0] if self._given[1] == which else without_slip(self._given[0], which)
-        if model is None or (model, which) == self._given:
-            return
-        self._given = (model, which)
-        parts.intake.surfaces.look_again()
-        text = f"# slipwise live, {parts.who.vehicle}, stamp {t:.3f} s: {which}\n{model.to_yaml()}"
-        who, validity = parts.who.vehicle, parts.learning.validity.whole
-        self._publish(ModelText(t, text, model, who, which, validity))
-
-    def _say_held(self, t: float, applied: AppliedModel) -> None:
-        said = self._parts.said
-        for name in applied.values:
-            why = applied.held.get(name)
-            if why is None:
-                said.ends(t, f"held {name}", f"{name} follows the model again")
-            else:
-                said.begins(t, f"held {name}", why)
-
-    def _withdraw(self, t: float, why: str) -> None:
-        """Take back what was handed on, where something was."""
-        parts, handed = self._parts, self._handed
-        self._handed = None
-        if parts.applied is None or not parts.applied.withdraw() or parts.handover is None or handed is None:
-            return
-        start = parts.learning.start or without_slip(handed, why)
-        for output in parts.handover.withdraw(t, start, why):
-            self._publish(output)
-        parts.said.note(t, f"applied parameters are withdrawn: {why}")
-
-    def _hand_on(self, t: float) -> None:
-        parts = self._parts
-        valid = parts.learning.valid
-        if parts.applied is None or parts.handover is None or valid is None:
-            return
-        self._handed = parts.applied.model(valid)
-        for output in parts.handover.hand_on(t, self._handed):
-            self._publish(output)
-        parts.applied.handed_on(t)
-
     def _answer(self, request: Request) -> None:
-        t, said = self._parts.intake.newest, self._parts.said
+        answer = self._answer_to(request)
+        said, t = self._parts.said, self._parts.intake.newest
+        if not answer.success and request.kind == "predict":
+            said.once(t, "no prediction", answer.message)
+        elif not answer.success:
+            said.note(t, answer.message)
+        if request.answer is not None:
+            request.answer(answer)
+
+    def _answer_to(self, request: Request) -> Answer:
+        parts, t = self._parts, self._parts.intake.newest
         if request.kind == "apply":
-            self._apply_now(t)
-            return
+            answer = self._giving.apply_now(t)
+            self._parameters = parameters_now(parts.learning, parts.applied)
+            return answer
+        if request.kind == "save":
+            self.save()
+            if parts.cache is None:
+                return Answer(False, "nothing is saved: there is no cache")
+            return Answer(self._unsaved is None, str(self._unsaved or f"saved in {parts.cache.state}"))
+        if request.kind in ("freeze", "resume"):
+            parts.gates.frozen = request.kind == "freeze"
+            return Answer(True, "learning is frozen" if parts.gates.frozen else "learning goes on")
+        return self._predict(request.content)
+
+    def _predict(self, content: str) -> Answer:
         try:
-            asked = json.loads(request.content)
-            horizon = float(asked.get("horizon", AHEAD))
             if self._odometry is None:
                 raise ValueError("no pose was measured yet")
             learner = self._parts.learning.learner
-            rows = np.array(asked["commands"], dtype=np.float64)
-            rows = rows if rows.size else np.zeros((0, 1 + len(learner.axes)))
-            self._publish(path_ahead(learner, self._odometry, rows, horizon=horizon, asked=True))
+            names, newest = learner.axes.names, self._parts.intake.newest
+            rows, horizon = asked_commands(content, names, newest=newest, horizon=AHEAD)
+            path = path_ahead(learner, self._odometry, rows, horizon=horizon, asked=True)
         except Exception as problem:  # the text comes from outside
-            said.count("a prediction that cannot be made")
-            said.once(t, "no prediction", f"a prediction was asked for that cannot be made: {problem}")
-
-    def _apply_now(self, t: float) -> None:
-        parts = self._parts
-        valid = parts.learning.valid_now
-        if parts.applied is None:
-            parts.said.note(t, "no parameters are applied: live.apply.mode is off")
-        elif valid is None:
-            validity = parts.learning.validity
-            parts.said.note(t, f"no parameters are applied: {model_words(validity.whole, validity.why)}")
-        else:
-            parts.applied.jump(valid, parts.learning.validity.of)
-            self._hand_on(t)
-            self._parameters = parameters_now(parts.learning, parts.applied)
+            self._parts.said.count("a prediction that cannot be made")
+            return Answer(False, f"a prediction was asked for that cannot be made: {problem}")
+        self._publish(path)
+        return Answer(True, "", path)
 
     def _tick(self) -> None:
         now = time.monotonic()

@@ -56,6 +56,7 @@ class RosTransport:
         name: of the node.
         cues: topics on which others say what they know.
         headed: poses have headings; those without are positions otherwise.
+        simulated: whether /clock gives the time; None: where somebody publishes it.
     """
 
     def __init__(  # noqa: PLR0913 (what it reads, and how)
@@ -67,10 +68,11 @@ class RosTransport:
         name: str,
         cues: CueTopics = _NO_CUES,
         headed: bool = True,
+        simulated: bool | None = None,
     ) -> None:
         self._wire, self._roles, self._options = wire, roles, options
         self._name, self._override, self._terrain = name, cues.override, cues.terrain
-        self._headed = headed
+        self._headed, self._simulated = headed, simulated
         self._messages, self._listeners = RosMessages(name), Listeners(wire.connections)
         self._reading = ros_types()
         self._notices: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -89,7 +91,9 @@ class RosTransport:
         """
         for topic, about in TOPICS.items():
             self._advertise(topic, about)
-        if any(topic.name == CLOCK for topic in self._wire.topics()):
+        if self._simulated or (
+            self._simulated is None and any(topic.name == CLOCK for topic in self._wire.topics())
+        ):
             self._stamps.simulated = True
             self._notices.put("stamps without a header are those of /clock")
             self._take(

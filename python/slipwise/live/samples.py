@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from slipwise.live.outputs import Path
 from slipwise.logs.measurements import Command, Gyro, KnownForce, Measurement, Pose, Twist, Wheels
 
 
@@ -18,14 +20,25 @@ class Override:
 
 
 @dataclass(frozen=True, slots=True)
+class Answer:
+    """What came of a request."""
+
+    success: bool
+    message: str
+    path: Path | None = None  # that was predicted
+
+
+@dataclass(frozen=True, slots=True)
 class Request:
     """A request to the node.
 
-    `apply` hands the parameters learned to others now; `predict` asks for the path of given commands.
+    `apply` hands the parameters learned to others now; `predict` asks for the path of given commands;
+    `freeze` lets learning rest until `resume`; `save` writes the cache now.
     """
 
-    kind: Literal["apply", "predict"]
+    kind: Literal["apply", "predict", "freeze", "resume", "save"]
     content: str = ""  # of a prediction, as JSON: {"horizon": s, "commands": [[t, v, omega], ...]}
+    answer: Callable[[Answer], None] | None = None  # is called with what came of it, by the node's thread
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +77,7 @@ Stamped = Measurement | Override
 Sample = Stamped | Request | SurfaceCue | RunStart | Unusable
 
 __all__ = [
+    "Answer",
     "Command",
     "DriveStart",
     "Gyro",

@@ -4,21 +4,24 @@
 from __future__ import annotations
 
 import itertools
+import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import pytest
 from sample_models import make_model, named
 from sample_slopes import Hills, hilly_log
 from scripted_node import SLIP, Scripted, driven, run_node
 
-from slipwise.calibration import make_settings
+from slipwise.calibration import Settings, make_settings
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.live.build import build_node
 from slipwise.live.outputs import ModelText, Output, Validity
 from slipwise.live.replay import samples_of
+from slipwise.live.samples import Answer, Pose, Request
 from slipwise.live.validity import judged
 from slipwise.models import Model
 
@@ -99,3 +102,46 @@ def test_a_delay_of_seconds_is_real_where_stamps_were_compared_with_arrival(
     verdict = built.learning.model.content.verdict
     assert verdict.good is (transport is Compared)
     assert ("their clocks differ" in verdict.sentence) is (transport is Scripted)
+
+
+def test_a_node_goes_on_with_what_another_has_learned_or_forgets_it(tmp_path: Path) -> None:
+    table = LiveTable(cache=str(tmp_path))
+    built, _ = run_node(driven(), table)
+    settings = Settings(basis="edd-2").model_copy(update={"live": table})
+    goes_on = build_node(Scripted([]), "wheel", settings, run="again", kept=built.learning)
+    assert goes_on.learning.learner is built.learning.learner
+    goes_on.node.run()
+    forgets = build_node(Scripted([]), "wheel", settings, run="again", forget=True)
+    assert not forgets.learning.learner.learned
+    assert [path.suffix for path in tmp_path.glob("*.state*")] == [".set-aside"]
+    forgets.node.run()
+
+
+def test_requests_are_answered_in_turn(tmp_path: Path) -> None:
+    answers: dict[str, Answer] = {}
+
+    def ask(name: str, kind: Literal["predict", "freeze", "resume", "save"], content: str = "") -> Request:
+        return Request(kind, content, lambda answer: answers.update({name: answer}))
+
+    first, rest = driven()[:2000], driven()[2000:]
+    numbers = {"t": [0.0, 1.0], "v": [1.0, 1.0], "omega": [0.0, 0.5]}
+    script = [
+        ask("too early", "predict", '{"commands": []}'),
+        *first,
+        ask("ahead", "predict", json.dumps({"horizon": 2.0, "ahead": numbers})),
+        ask("unknown", "predict", json.dumps({"ahead": numbers | {"vy": [0.1, 0.1]}})),
+        ask("short", "predict", json.dumps({"ahead": numbers | {"v": [1.0]}})),
+        ask("freeze", "freeze"),
+        *rest,
+        ask("save", "save"),
+    ]
+    built, _ = run_node(script, LiveTable(cache=str(tmp_path)))
+    assert {name for name, answer in answers.items() if answer.success} == {"ahead", "freeze", "save"}
+    assert answers["too early"].message.endswith("no pose was measured yet")
+    assert answers["unknown"].message.endswith("the robot takes v, omega, not vy")
+    assert answers["short"].message.endswith("give as many numbers of v, omega as of t")
+    path = answers["ahead"].path
+    assert path is not None
+    assert path.t[-1] - path.t[0] == pytest.approx(2.0)
+    counted = built.said.counts["poses not learned from: it was asked to rest"]
+    assert counted == sum(isinstance(sample, Pose) for sample in rest)

@@ -35,10 +35,14 @@ class _Subscription:
 
 
 class RclpyWire:
-    """A node in a context and a thread of its own, whose subscriptions give bytes.
+    """A node in a context and a thread of its own, whose subscriptions give bytes; or a node of others.
 
     Signals stay with the program. Where neither the options nor ROS_AUTOMATIC_DISCOVERY_RANGE ask for the
     network, that variable is set to this host alone.
+
+    Args:
+        options: of the node.
+        node: of others, whose executor spins it; it stays theirs, and is left as it was.
 
     Raises:
         SettingsError: rclpy does not start with these options.
@@ -46,27 +50,10 @@ class RclpyWire:
 
     name = "rclpy"
 
-    def __init__(self, options: WireOptions) -> None:
+    def __init__(self, options: WireOptions, node: Any = None) -> None:
         rclpy: Any = import_module("rclpy")
-        signals: Any = import_module("rclpy.signals")
-        if not options.network:
-            os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-        self._context: Any = import_module("rclpy.context").Context()
-        try:
-            rclpy.init(
-                context=self._context,
-                domain_id=options.domain_number(),
-                signal_handler_options=signals.SignalHandlerOptions.NO,
-            )
-            self._node: Any = rclpy.create_node(
-                options.node_name,
-                context=self._context,
-                namespace=options.namespace,
-                use_global_arguments=False,
-            )
-        except (RuntimeError, ValueError) as error:
-            self._context.try_shutdown()
-            raise SettingsError(f"rclpy does not start: {error}", advice="look at the node's name") from error
+        clock: Any = import_module("rclpy.clock")
+        self._node: Any = _own_node(options) if node is None else node
         self._middleware = str(rclpy.get_rmw_implementation_identifier())
         self._publishers: dict[str, Any] = {}
         self._clients: dict[str, Any] = {}
@@ -75,14 +62,24 @@ class RclpyWire:
         self._lock = threading.RLock()
         self._delivery = Delivery(self._silence)
         self._closed = self._delivery.closed
-        self._node.create_timer(_LOOK, self._look)
-        self._executor: Any = import_module("rclpy.executors").SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self._node)
-        self._thread = threading.Thread(target=self._spin, name="slipwise-rclpy", daemon=True)
-        self._thread.start()
+        steady = clock.Clock(clock_type=clock.ClockType.STEADY_TIME)  # that of the node may be simulated
+        self._timer = self._node.create_timer(_LOOK, self._look, clock=steady)
+        self._executor: Any = None
+        self._thread: threading.Thread | None = None
+        if node is None:
+            executors: Any = import_module("rclpy.executors")
+            self._executor = executors.SingleThreadedExecutor(context=self._node.context)
+            self._executor.add_node(self._node)
+            self._thread = threading.Thread(target=self._spin, name="slipwise-rclpy", daemon=True)
+            self._thread.start()
 
     def topics(self) -> list[WireTopic]:
-        """Return what is published by others now."""
+        """Return what is published by others now.
+
+        Raises:
+            SettingsError: the wire is closed.
+        """
+        self._delivery.require_open()
         own = self._node.get_name(), self._node.get_namespace()
         found = []
         for topic, types in self._node.get_topic_names_and_types():
@@ -180,11 +177,25 @@ class RclpyWire:
             if self._closed.is_set():
                 return
             self._closed.set()
+        if self._thread is None:
+            self._leave_node()
+            return
         self._executor.shutdown()
         if threading.current_thread() is not self._thread:
             self._thread.join()
         self._node.destroy_node()
-        self._context.try_shutdown()
+        self._node.context.try_shutdown()
+
+    def _leave_node(self) -> None:
+        """Take away what was made on a node of others."""
+        node = self._node
+        node.destroy_timer(self._timer)
+        for made in self._subscriptions:
+            node.destroy_subscription(made.entity)
+        for publisher in self._publishers.values():
+            node.destroy_publisher(publisher)
+        for client in self._clients.values():
+            node.destroy_client(client)
 
     def _spin(self) -> None:
         external: Any = import_module("rclpy.executors").ExternalShutdownException
@@ -227,6 +238,31 @@ class RclpyWire:
             )
             for found in self._node.get_publishers_info_by_topic(topic)
         ]
+
+
+def _own_node(options: WireOptions) -> Any:
+    """Return a node in a context of its own.
+
+    Raises:
+        SettingsError: rclpy does not start with these options.
+    """
+    rclpy: Any = import_module("rclpy")
+    signals: Any = import_module("rclpy.signals")
+    if not options.network:
+        os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    context: Any = import_module("rclpy.context").Context()
+    try:
+        rclpy.init(
+            context=context,
+            domain_id=options.domain_number(),
+            signal_handler_options=signals.SignalHandlerOptions.NO,
+        )
+        return rclpy.create_node(
+            options.node_name, context=context, namespace=options.namespace, use_global_arguments=False
+        )
+    except (RuntimeError, ValueError) as error:
+        context.try_shutdown()
+        raise SettingsError(f"rclpy does not start: {error}", advice="look at the node's name") from error
 
 
 def _class_of(type_name: str) -> Any:
