@@ -7,13 +7,11 @@ import math
 from dataclasses import dataclass
 
 from slipwise.live.samples import Command, Override, Pose, Stamped, Twist, Wheels
-from slipwise.logs.findings.source_watch import SourceWatch
+from slipwise.logs.findings.sources import pose_watch, twist_watch
 from slipwise.models import Model
 
 RECOVERY = 2.0  # s for which a gate stays closed after its cause: lag and delay reach that far
 REVERSE = -0.05  # m/s; slower than this is no driving in reverse
-FAR_TWIST = (0.25, 0.25, 0.5)  # v, vy [m/s], omega [rad/s] between two samples of one robot
-FAR_POSE = (0.75, 0.75)  # x, y [m]
 STALE_AFTER = 1.0  # s without input: drives that miss commands for so long have stopped
 
 
@@ -48,8 +46,7 @@ class Gates:
         self.frozen = False  # on request
         self._override = False
         self._last_input = -math.inf
-        self._wheels = SourceWatch(FAR_TWIST, relative=0.1)
-        self._poses = SourceWatch(FAR_POSE)
+        self._wheels, self._poses = twist_watch(), pose_watch()
 
     def take(self, sample: Stamped) -> None:
         """Take a sample in the order in which it came; one without a stamp says nothing."""

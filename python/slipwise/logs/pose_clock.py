@@ -118,8 +118,13 @@ class _Driven:
 
 def agreement_at(inputs: Sequence[Inputs], motion: PoseMotion, offset: float, unknown_after: float) -> float:
     """Return the agreement of speeds and yaw rates at an offset [s]; -1 where there is nothing to compare."""
+    return float(agreements(inputs, motion, np.array([offset]), unknown_after)[0])
+
+
+def agreements(inputs: Sequence[Inputs], motion: PoseMotion, offsets: Floats, unknown_after: float) -> Floats:
+    """Return the agreement at each of some offsets [N] in s, as `agreement_at` does."""
     drive = [_Driven.of(part, 0.0, unknown_after) for part in inputs]
-    return float(_scores_at(drive, motion, np.array([offset]))[0])
+    return _scores_at(drive, motion, offsets)
 
 
 def _coarse(drive: Sequence[_Driven], motion: PoseMotion) -> ClockMatch:

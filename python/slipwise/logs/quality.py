@@ -13,6 +13,7 @@ from slipwise.logs.findings.finding import Finding, RefusedLogError
 from slipwise.logs.findings.plausibility import Implausible, UnreachablePoses, agreement
 from slipwise.logs.findings.readings import NotInSeconds
 from slipwise.logs.findings.seen import OTHER, WORDS
+from slipwise.logs.findings.wheel_twists import DeadWheel
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import LeftOut, Log, Run, has_course
@@ -41,7 +42,9 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
     rows = measured_rows(log.runs, unknown_after)
     agreed = {name: agreement(motion_windows(rows, name)) for name in ("command", "wheel")}
     for name, own in agreed.items():
-        _refuse(Implausible.of(own, WORDS[name], agreed[OTHER[name]]), where)
+        odd = Implausible.of(own, WORDS[name], agreed[OTHER[name]])
+        dead = DeadWheel.of(motion_windows(rows, "wheel")) if odd is not None and name == "wheel" else None
+        _refuse(dead or odd, where)
     runs, found = _smoothed(log, unknown_after)
     if _heads_along_course(runs, unknown_after):
         log = as_positions(log)

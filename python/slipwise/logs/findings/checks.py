@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from slipwise import _core
 from slipwise.logs.findings.clocks import CLOCKS
+from slipwise.logs.findings.command_answers import EchoedCommands
 from slipwise.logs.findings.command_stops import CommandTimeout
 from slipwise.logs.findings.course_heading import CourseHeading
 from slipwise.logs.findings.encoders import WheelSpikes
@@ -21,11 +22,15 @@ from slipwise.logs.findings.headings import (
     UnlikelySpeed,
 )
 from slipwise.logs.findings.plausibility import ENOUGH, ENOUGH_TURN, Implausible, UnreachablePoses
+from slipwise.logs.findings.pose_streams import ClockOffset, FrozenPoses
 from slipwise.logs.findings.readings import READINGS
 from slipwise.logs.findings.repeated_wheels import RepeatedWheels
 from slipwise.logs.findings.seen import Seen, WholeLog
+from slipwise.logs.findings.sensor_place import SensorOffCentre
+from slipwise.logs.findings.sources import TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
+from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log, Run, has_course
 from slipwise.logs.motion_windows import evidence_of
@@ -33,22 +38,35 @@ from slipwise.logs.motion_windows import evidence_of
 _LONG = 4  # times as many windows suffice of a robot that hardly turns, or only turns
 
 #: What else looks wrong follows from these.
-FIRST: tuple[Check, ...] = (Implausible(), UnreachablePoses())
+FIRST: tuple[Check, ...] = (DeadWheel(), Implausible(), UnreachablePoses())
 #: In the order in which they are looked for: what explains others comes before them.
 THEN: tuple[Check, ...] = (
     UnlikelySpeed(),
     DoesNotMove(),
     GyroTurnsOtherwise(),
+    ParentTwist(),
     CourseHeading(),
     TurnedPoses(),
     BackwardPoses(),
     ConstantHeading(),
     HeadingJump(),
+    SensorOffCentre(),
     LostHeading(),
     RepeatedWheels(),
+    WheelSize(),
+    Unrelated(),
 )
 #: What only a whole log shows.
-WHOLE: tuple[Check, ...] = (GyroTurnsOtherwise(), CommandTimeout(), ArmJoints(), WheelSpikes())
+WHOLE: tuple[Check, ...] = (
+    GyroTurnsOtherwise(),
+    CommandTimeout(),
+    ArmJoints(),
+    WheelSpikes(),
+    EchoedCommands(),
+    FrozenPoses(),
+    ClockOffset(),
+    TwoSources(),
+)
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(
     {c.kind: c for c in (*FIRST, *THEN, *WHOLE, *CLOCKS, *TOPICS, *READINGS)}.values()

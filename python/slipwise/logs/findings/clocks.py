@@ -49,9 +49,7 @@ class ClockRate(Check):
     kind, family, spoils = "clock-rate", "clocks", False
     means = "header stamps run at another rate than real time, while something else is dated by receipt"
     shows = "the slope of stamps over receipt is off by 0.5 % and more"
-    cure = (
-        "`use_sim_time` for every node, `ros2 bag record --use-sim-time`; what has no header is dated again"
-    )
+    cure = "`use_sim_time` for every node, `ros2 bag record --use-sim-time`; others are dated by it"
 
     @classmethod
     def by(cls, rate: float, dated: str) -> Finding:

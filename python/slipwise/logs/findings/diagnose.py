@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from slipwise.addresses import shown
-from slipwise.logs.findings.checks import findings_of
+from slipwise.logs.findings.checks import EVERY, findings_of
 from slipwise.logs.findings.finding import Finding, RefusedLogError
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log
@@ -16,6 +16,7 @@ from slipwise.logs.open_log import open_log
 from slipwise.logs.options import LogOptions
 
 _OF_AN_INPUT = ("unlikely-speed",)  # said of commands and of wheels; of other kinds one tells the other
+_HIDDEN_BY = {check.kind: check.hidden_by for check in EVERY}
 
 
 @dataclass(frozen=True)
@@ -64,9 +65,11 @@ def diagnose_log(
 
 
 def each_once(found: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Return one finding of each kind; of kinds that concern one input alone, each sentence."""
+    """Return one finding of each kind that no other hides; of kinds of one input alone, each sentence."""
+    every = tuple(found)
+    kinds = {each.kind for each in every}
     first: dict[tuple[str, str], Finding] = {}
-    for each in found:
-        apart = each.kind in _OF_AN_INPUT
-        first.setdefault((each.kind, each.sentence if apart else ""), each)
+    for each in every:
+        if not kinds.intersection(_HIDDEN_BY[each.kind]) - {each.kind}:
+            first.setdefault((each.kind, each.sentence if each.kind in _OF_AN_INPUT else ""), each)
     return tuple(first.values())

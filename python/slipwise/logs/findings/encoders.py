@@ -5,11 +5,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.log import Run
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import WholeLog
 
+_FEWEST = 100  # samples, before a spike among them is told
+_USUAL = 0.98  # quantile of sizes that are no spikes
+_FAR = 6.0  # times the usual size, and the neighbours'
+_LEAST = 0.02  # m/s or rad/s, below which speeds are those of a robot that stands
 _LEFT = "absurd-speed"  # kind of what a reader leaves out
 
 
@@ -18,18 +25,34 @@ class WheelSpikes(Check):
 
     kind, family, spoils = "wheel-spikes", "encoders", False
     means = "a counter wraps (16 bits, pi, 2 pi) or is reset, or ticks jump: speeds far beyond all others"
-    shows = "samples more than 15 times as fast as all before, alone among their neighbours"
-    cure = "none: they are left out; unwrap the counter in the driver"
+    shows = "single samples 6 times as fast as their neighbours and as 98 % of all"
+    cure = "unwrap the counter in the driver; those 15 times as fast as all before are left out"
 
     def look_at(self, whole: WholeLog) -> Finding | None:
         """Look at what was left out of the wheels."""
         left = [e for e in whole.log.left_out if e.kind == _LEFT and e.reason.startswith("wheels")]
-        if not left:
+        kept = [spike for run in whole.log.runs for spike in _spikes(run)]
+        count = sum(each.count for each in left) + len(kept)
+        if not count:
             return None
-        count = sum(each.count for each in left)
+        first = left[0].where if left else kept[0]
         return self.found(
-            f"{count} wheel speeds jump far beyond all others for one sample (first at {left[0].where}): a "
+            f"{count} wheel speeds jump far beyond all others for one sample (first at {first}): a "
             "counter wraps or is reset",
-            "They are left out. Unwrap the counter (16 bits, pi, 2 pi) in the driver, or publish velocities.",
+            "They are left out. " * (not kept)
+            + "Unwrap the counter (16 bits, pi, 2 pi) in the driver, or publish velocities.",
             evidence=count,
         )
+
+
+def _spikes(run: Run) -> list[str]:
+    """Return where single samples stand far beyond their neighbours and all others."""
+    wheels = run.wheels
+    if wheels is None or len(wheels) < _FEWEST:
+        return []
+    found = np.zeros(len(wheels), bool)
+    for values in (wheels.v, wheels.omega):
+        beside = np.maximum(np.abs(values[:-2]), np.abs(values[2:]))
+        usual = float(np.quantile(np.abs(values), _USUAL))
+        found[1:-1] |= np.abs(values[1:-1]) > np.maximum(_FAR * beside, _FAR * max(usual, _LEAST))
+    return [run.place(t) for t in wheels.t[found].tolist()]

@@ -54,6 +54,7 @@ class Check:
     explained_by: ClassVar[
         tuple[str, ...]
     ] = ()  # kinds that it would follow from: not looked for beside them
+    hidden_by: ClassVar[tuple[str, ...]] = ("two-sources",)  # kinds beside which it is not said of a log
 
     def look(self, seen: Seen) -> Finding | None:  # noqa: ARG002
         """Return what was found in inputs and poses; None where nothing was, or it shows elsewhere."""

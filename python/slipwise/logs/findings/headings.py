@@ -36,7 +36,7 @@ class TurnedPoses(Check):
     means = "the heading of the poses is turned, such as by 90 degrees: a sensor's frame, or east for north"
     shows = "the mean course of the poses is off by more than 30 degrees"
     cure = "`--pose-yaw-offset`, or the sensor's static transform"
-    explained_by = ("does-not-move", "course-heading")
+    explained_by = ("does-not-move", "parent-twist", "course-heading")
 
     def look(self, seen: Seen) -> Finding | None:
         """Look at the mean course."""
@@ -59,7 +59,7 @@ class BackwardPoses(Check):
     means = "the heading is turned by 180 degrees, or the sign of the speed is flipped"
     shows = "the mean course of the poses is off by more than 150 degrees"
     cure = "`--pose-yaw-offset 3.1416`, `--wheel-scale -1,1` or `--command-scale -1,1`"
-    explained_by = ("does-not-move", "course-heading")
+    explained_by = ("does-not-move", "parent-twist", "course-heading")
 
     def look(self, seen: Seen) -> Finding | None:
         """Look at the mean course; the other input tells a sign from a frame."""
@@ -116,7 +116,7 @@ class ConstantHeading(Check):
     means = "the heading never changes: a source without one, or a column that was not filled"
     shows = "poses turn less than 1 % of what the inputs turn, by 3 rad and more"
     cure = "another source of poses, or the column `yaw`"
-    explained_by = ("does-not-move", "course-heading")
+    explained_by = ("does-not-move", "parent-twist", "course-heading")
 
     def look(self, seen: Seen) -> Finding | None:
         """Look at the turns of the poses."""
@@ -141,7 +141,7 @@ class HeadingJump(Check):
     means = "the heading jumps once, such as when a compass or a localiser finds itself again"
     shows = "courses before and after differ by more than 30 degrees, each with itself by far less"
     cure = "`--end` and `--start`: learn from before and after as two logs"
-    explained_by = ("does-not-move", "course-heading", "constant-heading")
+    explained_by = ("does-not-move", "parent-twist", "course-heading", "constant-heading")
 
     def look(self, seen: Seen) -> Finding | None:
         """Look for the time at which two mean courses differ most."""
@@ -174,7 +174,7 @@ class LostHeading(Check):
     means = "the heading does not go with the course: random, or of a localiser that is lost"
     shows = "courses agree with headings along no axis (mean length below 0.4)"
     cure = "another source of the heading, or positions alone (`--set live.positions=true`)"
-    explained_by = ("does-not-move", "course-heading", "constant-heading", "heading-jump")
+    explained_by = ("does-not-move", "parent-twist", "course-heading", "constant-heading", "heading-jump")
 
     def look(self, seen: Seen) -> Finding | None:
         """Look at the axes along which poses move."""

@@ -50,6 +50,7 @@ class DoesNotMove(Check):
     shows = "poses move less than a tenth of the inputs for 6 s; no model is good from a fifth of the time on"
     cure = "look at the emergency stop and the localiser; `--start`, `--end` leave such a time out"
     explained_by = ("unlikely-speed",)
+    hidden_by = ("two-sources", "frozen-poses", "unrelated")
 
     def look(self, seen: Seen) -> Finding | None:
         """Look for stretches of windows without motion."""

@@ -65,9 +65,8 @@ CONTRADICTORY: dict[str, tuple[Log, str, str, str]] = {  # log, input, kind, wha
 def test_each_contradiction_is_named_with_what_cures_it(subtests: pytest.Subtests) -> None:
     for name, (log, input_name, kind, cure) in CONTRADICTORY.items():
         with subtests.test(name=name):
-            found = findings_of(log, input_name)
+            found = [each for each in findings_of(log, input_name) if each.spoils]
             assert [each.kind for each in found] == [kind]
-            assert found[0].spoils
             assert cure in " ".join(found[0].advice)
 
 
@@ -96,7 +95,8 @@ def test_slip_lag_and_noise_are_no_contradiction(subtests: pytest.Subtests) -> N
     ]:
         for input_name in ["command", "wheel"]:
             with subtests.test(drive=drive, input_name=input_name):
-                assert findings_of(sound_log(drive), input_name) == ()
+                found = findings_of(sound_log(drive), input_name)  # what may be so of a sound robot says "or"
+                assert not any(each.spoils or " or " not in each.sentence for each in found)
 
 
 def test_a_short_stop_is_said_but_spoils_nothing() -> None:
@@ -109,7 +109,7 @@ def test_a_short_stop_is_said_but_spoils_nothing() -> None:
         return replace(p, x=x, y=y, yaw=yaw)
 
     found = findings_of(with_poses(log, held), "wheel")
-    assert [(each.kind, each.spoils) for each in found] == [("does-not-move", False)]
+    assert [(each.kind, each.spoils) for each in found] == [("does-not-move", False), ("frozen-poses", False)]
     assert "It stands still from 51.0 to 58.5 s." in found[0].advice
 
 
@@ -186,5 +186,6 @@ def test_no_real_robot_contradicts_its_inputs(real_log_dir: Path) -> None:
         for end in (*np.arange(40.0, last, 20.0), last + 1.0):
             part = cut_to_span(log, None, float(end))
             for name in ("command", "wheel"):
-                found += [(path.name, end, name, each.sentence) for each in findings_of(part, name)]
+                spoilt = [each.sentence for each in findings_of(part, name) if each.spoils]
+                found += [(path.name, end, name, sentence) for sentence in spoilt]
     assert found == []
