@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all tests share: the folder of real logs, a browser, and a count of the tests without logs."""
+"""What all tests share: real logs, a browser, a real ROS 2, and a count of the tests without logs."""
 
 from __future__ import annotations
 
@@ -27,6 +27,21 @@ def real_log_dir() -> Path:
     reason = f"SLIPWISE_DATA names no folder: {folder}" if folder else _NO_DATA
     if os.environ.get("SLIPWISE_REQUIRE_DATA") == "1":
         pytest.fail(f"{reason}, and SLIPWISE_REQUIRE_DATA=1 asks for them", pytrace=False)
+    pytest.skip(reason)
+
+
+@pytest.fixture(scope="session")
+def ros_python() -> Path:
+    """Return the Python that has rclpy; skip without it, or fail where SLIPWISE_REQUIRE_ROS=1 asks for it.
+
+    It is that of SLIPWISE_ROS_VENV, or of `.venv-ros`, and has what is built of ros/.
+    """
+    folder = Path(os.environ.get("SLIPWISE_ROS_VENV") or Path(__file__).parent / ".venv-ros")
+    if (folder / "installed.txt").exists():
+        return folder / "bin" / "python"
+    reason = f"there is no ROS 2 for tests in {folder} (`make ros` installs it)"
+    if os.environ.get("SLIPWISE_REQUIRE_ROS") == "1":
+        pytest.fail(reason, pytrace=False)
     pytest.skip(reason)
 
 

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <nav2_mppi_controller/motion_models.hpp>
-#include <optional>
 #include <pluginlib/class_list_macros.hpp>
 #include <string>
 #include <vector>
 
-#include "model.h"  // slipwise export model.yaml --to c-header -o model.h
+#include "default_model.hpp"
+#include "model_listener.hpp"
 
 namespace slipwise_nav2 {
 
@@ -18,7 +19,13 @@ class LearnedMotionModel : public mppi::MotionModel {
  public:
   void initialize(mppi::ParametersHandler* handler, const std::string& name) override {
     auto get = handler->getParamGetter(name);
+    std::string topic;
     get(threads_, "threads", 1);
+    get(topic, "model_topic", std::string("/slipwise/motion_model"));
+    drive_ = std::make_unique<Drive>(Drive{default_model()});
+    std::string node = name + "_model";
+    std::replace(node.begin(), node.end(), '.', '_');
+    listener_ = std::make_unique<ModelListener>(node, topic, default_model());
   }
 
   /// Nav2 would sample sideways commands of a holonomic robot. Sideways slip is in `vy`, which it then does not add.
@@ -26,11 +33,10 @@ class LearnedMotionModel : public mppi::MotionModel {
 
   /// Fills what the robot does over each period, the first included: commands in flight act before those of `state`.
   void predict(mppi::models::State& state) override {
-    if (!program_ || program_->setting().period != static_cast<double>(model_dt_)) {
-      program_.emplace(compiled(static_cast<double>(model_dt_)));
-    }
+    const auto period = static_cast<double>(model_dt_);
+    listener_->take(drive_, period);
     const std::vector<slipwise::DriveCommand> sent = in_flight();
-    slipwise::planning::predict_columns(*program_,
+    slipwise::planning::predict_columns(drive_->at(period),
                                         {state.cvx.data(), state.cwz.data(), static_cast<std::size_t>(state.cvx.rows()),
                                          static_cast<std::size_t>(state.cvx.cols())},
                                         {.drive = {state.speed.linear.x, state.speed.angular.z}, .in_flight = sent},
@@ -39,23 +45,6 @@ class LearnedMotionModel : public mppi::MotionModel {
   }
 
  private:
-  static slipwise::RolloutProgram compiled(double period) {
-    const std::vector<std::string> lon{SLIPWISE_TERMS_LON}, lat{SLIPWISE_TERMS_LAT}, ang{SLIPWISE_TERMS_ANG};
-    const slipwise::MotionModel model({"learned", lon, lat, ang}, {.dynamics = SLIPWISE_HAS_DYNAMICS,
-                                                                   .response = SLIPWISE_HAS_RESPONSE,
-                                                                   .delays = SLIPWISE_HAS_DELAYS,
-                                                                   .wheelbase = SLIPWISE_WHEELBASE});
-    const std::vector<double> values{SLIPWISE_PARAMETERS};
-    const slipwise::CommandLimits limits{.speed = {SLIPWISE_LIMITS_SPEED},
-                                         .yaw_rate = {SLIPWISE_LIMITS_YAW_RATE},
-                                         .side = {SLIPWISE_LIMITS_SIDE},
-                                         .wheel_separation = SLIPWISE_LIMITS_WHEEL_SEPARATION,
-                                         .gain_v = SLIPWISE_LIMITS_GAIN_V,
-                                         .gain_omega = SLIPWISE_LIMITS_GAIN_OMEGA};
-    return {
-        model, Eigen::Map<const Eigen::VectorXd>(values.data(), model.size()), {.period = period, .limits = limits}};
-  }
-
   /// What Nav2 published before, the oldest first. Its histories are as long as `model_delay_vx` and `_wz` say.
   std::vector<slipwise::DriveCommand> in_flight() const {
     const std::size_t count = std::max(cmd_history_vx_.size(), cmd_history_wz_.size());
@@ -71,7 +60,8 @@ class LearnedMotionModel : public mppi::MotionModel {
   }
 
   int threads_ = 1;
-  std::optional<slipwise::RolloutProgram> program_;
+  std::unique_ptr<Drive> drive_;
+  std::unique_ptr<ModelListener> listener_;
 };
 
 }  // namespace slipwise_nav2
