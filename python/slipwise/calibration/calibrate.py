@@ -109,7 +109,7 @@ def calibrate_by(
         (*log.left_out, *unused_runs(log, input_name), *windows.left_out),
         (
             *log.notes,
-            *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.spoils),
+            *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.judged),
             *(source.sentence() for source in learned.sources),
             *unused_measurements(log, settings, smooth=smooth),
         ),

@@ -173,7 +173,7 @@ def _too_late(known: Identified, facts: LogFacts) -> str:
 def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
     """What is to be known of a model beside its figures, even where it is good; sentences."""
     partly = [
-        f"{each.sentence[0].upper()}{each.sentence[1:]}." for each in facts.contradictions if not each.spoils
+        f"{each.sentence[0].upper()}{each.sentence[1:]}." for each in facts.contradictions if each.reserves
     ]
     honest = "" if judgement.consistency is None else judgement.consistency.sentence()
     courses = POSITIONS_ONLY if facts.positions else ""
@@ -210,7 +210,7 @@ def _unknown(known: Identified) -> str:
 
 def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
     """What to do about the faults and the reservations."""
-    advice = [text for each in facts.contradictions for text in each.advice]
+    advice = [text for each in facts.contradictions if each.judged for text in each.advice]
     if any(each.spoils for each in facts.contradictions):
         return tuple(advice)
     if judgement.too_short:

@@ -102,9 +102,9 @@ class Learning:
         return True
 
     def _say_findings(self, t: float) -> None:
-        """Say once what is wrong and spoils no model; what does is said with the model that is not used."""
+        """Say once what is wrong and no verdict says."""
         for each in self.learner.found:
-            if not each.spoils:
+            if not each.judged:
                 self._said.begins(t, each.kind, " ".join((f"{each.sentence}.", *each.advice)))
 
     def _standing(self, found: str) -> str:

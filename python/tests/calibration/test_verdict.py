@@ -218,7 +218,7 @@ def test_heavy_tails_are_said_and_covariances_that_hold_what_they_should_are_not
 
 
 def test_a_short_stop_qualifies_a_good_verdict() -> None:
-    stop = Finding("does-not-move", "the robot stops", ("Cut it out.",), spoils=False)
+    stop = Finding("does-not-move", "the robot stops", ("Cut it out.",), spoils=False, reserves=True)
     verdict = give_verdict(judged(BETTER, BETTER), Identified(2, ()), facts(contradictions=(stop,)))
     assert verdict.good
     assert verdict.reservations == ("The robot stops.",)

@@ -106,7 +106,7 @@ def test_late_poses_of_a_real_log_are_seen(real_log_dir: Path) -> None:
 
 
 def test_poses_whose_heading_is_turned_are_said_with_the_option_that_cures_them() -> None:
-    log = simulated_log(Drive(seconds=60.0))
+    log = simulated_log(Drive(seconds=60.0, lag=0.1))
     turned = [replace(run, poses=replace(run.poses, yaw=run.poses.yaw + np.pi / 2)) for run in log.runs]
     assert inspect_log(log).learned[0].contradictions == ()
     found = inspect_log(replace(log, runs=tuple(turned))).learned[0].contradictions

@@ -21,12 +21,20 @@ class Finding:
     kind: str  # a short stable name, such as "does-not-move"
     sentence: str
     advice: tuple[str, ...]  # what is likely wrong, and the option or parameter that cures it
-    spoils: bool = True  # no model of this log is good; false: it is said, and the model is judged without it
+    spoils: bool = True  # no model of this log is good
+    reserves: bool = (
+        False  # it is good with reservations; neither: it is said, and the model judged without it
+    )
     evidence: float | None = None  # the number that shows it, in the unit of its check
 
     def __str__(self) -> str:
         """Return the sentence."""
         return self.sentence
+
+    @property
+    def judged(self) -> bool:
+        """Whether a verdict says it."""
+        return self.spoils or self.reserves
 
 
 class RefusedLogError(LogError):
@@ -51,6 +59,7 @@ class Check:
     shows: ClassVar[str]  # for documents: the evidence, and from where on it is one
     cure: ClassVar[str]  # for documents: what to change
     spoils: ClassVar[bool] = True
+    reserves: ClassVar[bool] = False  # where it does not spoil
     explained_by: ClassVar[
         tuple[str, ...]
     ] = ()  # kinds that it would follow from: not looked for beside them
@@ -70,4 +79,5 @@ class Check:
     ) -> Finding:
         """Return a finding of this kind."""
         whole = cls.spoils if spoils is None else spoils
-        return Finding(cls.kind, sentence, tuple(filter(None, advice)), whole, evidence)
+        reserves = cls.reserves and not whole
+        return Finding(cls.kind, sentence, tuple(filter(None, advice)), whole, reserves, evidence)

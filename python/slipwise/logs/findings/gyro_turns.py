@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class GyroTurnsOtherwise(Check):
     """A gyro, learned from or left out, that does not turn as the inputs do."""
 
-    kind, family = "gyro-turns-otherwise", "signs and units"
+    kind, family, reserves = "gyro-turns-otherwise", "signs and units", True
     means = "a gyro in degrees, clockwise, or with its z axis down"
     shows = "it turns less than 0.05 or more than 5 times as much as the inputs, over 15 s of turns"
     cure = f"`{COLUMN}` in rad/s, positive counter-clockwise seen from above"

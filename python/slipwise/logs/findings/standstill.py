@@ -45,7 +45,7 @@ class Stretch:
 class DoesNotMove(Check):
     """A robot that stands still for a part of the time that it is driven."""
 
-    kind, family = "does-not-move", "drive"
+    kind, family, reserves = "does-not-move", "drive", True
     means = "the robot does not move although it is driven: a stop, a blocked robot, a localiser that stood"
     shows = "poses move less than a tenth of the inputs for 6 s; no model is good from a fifth of the time on"
     cure = "look at the emergency stop and the localiser; `--start`, `--end` leave such a time out"
