@@ -45,6 +45,7 @@ def environment(prefix: Path) -> dict[str, str]:
     python = f"-L{sysconfig.get_config_var('LIBDIR')} -lpython{sysconfig.get_python_version()}"
     return os.environ | {
         "PATH": f"{prefix / 'bin'}{os.pathsep}{os.environ['PATH']}",
+        "VIRTUAL_ENV": str(prefix),  # CMake looks for Python there
         "AMENT_PREFIX_PATH": str(prefix),
         "CMAKE_PREFIX_PATH": str(prefix),
         "LD_LIBRARY_PATH": os.pathsep.join(libraries),
