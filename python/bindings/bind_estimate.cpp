@@ -75,12 +75,14 @@ void bind_settings(nb::module_& m) {
             return estimate;
           },
           "estimate"_a, "seconds"_a, "The estimate after some time without a measurement [s].");
+  nb::class_<BranchSettings>(m, "BranchSettings").def(nb::init<>()).def_rw("follow", &BranchSettings::follow);
   nb::class_<CausalFilterSettings>(m, "CausalFilterSettings")
       .def(nb::init<>())
       .def_rw("prior", &CausalFilterSettings::prior)
       .def_rw("iekf", &CausalFilterSettings::iekf)
       .def_rw("noise", &CausalFilterSettings::noise)
-      .def_rw("force", &CausalFilterSettings::force);
+      .def_rw("force", &CausalFilterSettings::force)
+      .def_rw("branches", &CausalFilterSettings::branches);
   nb::class_<ChangeSettings>(m, "ChangeSettings")
       .def(nb::init<>())
       .def_rw("detect", &ChangeSettings::detect)

@@ -40,6 +40,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("unknown_after", &StreamSettings::unknown_after)
       .def_rw("latency", &StreamSettings::latency)
       .def_rw("horizons", &StreamSettings::horizons)
+      .def_rw("embargo", &StreamSettings::embargo)
       .def_rw("sensor", &StreamSettings::sensor)
       .def_rw("car", &StreamSettings::car)
       .def_rw("sources", &StreamSettings::sources)

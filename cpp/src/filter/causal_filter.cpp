@@ -37,7 +37,8 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
       settings_(settings),
       state_(model_, settings.noise),
       force_(model_.basis(), settings.force),
-      force_at_(std::numeric_limits<double>::infinity()) {
+      force_at_(std::numeric_limits<double>::infinity()),
+      branches_(model_, settings.branches) {
   follow({.v = 1.0, .omega = 1.0});
   started_ = false;
   stated_ = Eigen::VectorXd::Ones(model_.size());
@@ -59,13 +60,17 @@ void CausalFilter::follow(const ReferenceSpeeds& speeds) {
   Eigen::VectorXd std = slip_std_at(speeds);
   if (!started_) {
     state_.estimate = before_ = prior(speeds);
+    branches_.restart(state_.estimate);
   } else if (far_apart(speeds.v, speeds_.v) || far_apart(speeds.omega, speeds_.omega)) {
     std::optional<Estimate> changed = change_slip_prior(state_.estimate, slip_std_, std);
     std::optional<Estimate> before = change_slip_prior(before_, slip_std_, std);
     if (!changed || !before) {
       return;  // the old prior stays in force
     }
-    state_.estimate = std::move(*changed);
+    if (!branches_.change_prior(slip_std_, std)) {
+      return;
+    }
+    state_.estimate = branches_.follow() ? branches_.mixture() : std::move(*changed);
     before_ = std::move(*before);
   } else {
     return;
@@ -107,7 +112,12 @@ void CausalFilter::forget(double fraction) {
 void CausalFilter::start_from_here() {
   state_.scores.restart();
   stated_.setOnes();
-  before_ = state_.estimate;
+  branches_.restart(state_.estimate);
+  start_refits(state_.estimate);
+}
+
+void CausalFilter::start_refits(const Estimate& before) {
+  before_ = before;
   refit_.reset();
   kept_.clear();
   next_refit_ = kFirst;
@@ -140,6 +150,7 @@ void CausalFilter::know_robot(const Estimate& robot) {
   covariance.bottomRows(size).setZero();
   covariance.rightCols(size).setZero();
   covariance.bottomRightCorner(size, size) = robot.covariance;
+  branches_.restart(state_.estimate);
 }
 
 SurfaceSlip CausalFilter::new_surface(std::span<const SurfaceSlip> known) const {
@@ -193,6 +204,10 @@ void CausalFilter::end_refit() {
     found->estimate = std::move(*changed);
   }
   state_ = std::move(*found);
+  branches_.correct_leader(state_.estimate);
+  if (branches_.follow()) {
+    state_.estimate = branches_.mixture();
+  }
   refitted_ = true;
 }
 
@@ -200,17 +215,34 @@ IekfUpdate CausalFilter::learn(const InputHistory& inputs, const Segment& segmen
   follow(speeds);
   pass(segment);
   refitted_ = false;
-  IekfUpdate update = state_.learn(model_, inputs, segment, settings_.noise, settings_.iekf);
+  IekfUpdate update = branches_.follow() ? follow_branches(inputs, segment)
+                                         : state_.learn(model_, inputs, segment, settings_.noise, settings_.iekf);
   // A refit takes all parameters for constant, which a force is not.
   if (!full_ && !force_.learned() && !update.at.by_parameter.isZero(0.0)) {
     keep(inputs, segment);
   }
   if (settings_.noise.adapt) {
-    stated_ = state_.scores.std_factors(before_.covariance, state_.estimate.covariance);
+    const Estimate& first = branches_.follow() ? prior(speeds_) : before_;
+    stated_ = state_.scores.std_factors(first.covariance, state_.estimate.covariance);
     // Scores are summed as of what is constant: of a force, which changes, they may tell of more spread, not of less.
     for (const Eigen::Index place : force_.places()) {
       stated_[place] = std::max(stated_[place], 1.0);
     }
+  }
+  return update;
+}
+
+/// The heaviest branch alone is fitted again, over the segments in which it led.
+IekfUpdate CausalFilter::follow_branches(const InputHistory& inputs, const Segment& segment) {
+  const BranchSegment driven{.inputs = inputs,
+                             .segment = segment,
+                             .prior = prior(speeds_),
+                             .unit = slip_prior_std(model_.basis(), speeds_, 1.0),
+                             .speeds = speeds_,
+                             .alike = stated_.head(model_.slip_size()).cwiseAbs2().maxCoeff()};
+  IekfUpdate update = branches_.learn(model_, driven, settings_, state_);
+  if (branches_.leader_changed()) {
+    start_refits(branches_.leader());
   }
   return update;
 }

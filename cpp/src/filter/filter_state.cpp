@@ -17,14 +17,18 @@ IekfUpdate FilterState::learn(const MotionModel& model, const InputHistory& inpu
   const Eigen::Matrix3d expected = expected_noise(at.path, segment.measured, noise.shape);
   const Eigen::Matrix3d scaled = scaled_covariance(expected, scale_for(at.path, noise_scale.value()));
   IekfUpdate update = iekf_update(model, estimate, inputs, segment, std::move(at), scaled, iekf);
+  take(update, segment, {.expected = expected, .scaled = scaled});
+  return update;
+}
+
+void FilterState::take(const IekfUpdate& update, const Segment& segment, const SegmentNoise& noise) {
   estimate = update.estimate;
   if (shows_noise(segment)) {
-    noise_scale.learn(update.at, estimate.covariance, segment.measured, expected.diagonal());
+    noise_scale.learn(update.at, estimate.covariance, segment.measured, noise.expected.diagonal());
   }
   if (update.weight > 0.0) {
-    scores.add(update.at, estimate.covariance, segment, scaled / update.weight);
+    scores.add(update.at, estimate.covariance, segment, noise.scaled / update.weight);
   }
-  return update;
 }
 
 }  // namespace slipwise

@@ -125,19 +125,22 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
   update.estimate.mean = now.state;
   linear_update(update.estimate.covariance, now.at.by_parameter, weighted_noise);
   if (model.actuator_size() > 0) {
-    const Eigen::Matrix3d bent = second_order(model, update.estimate, inputs, segment, now.at.predicted.vector());
-    if (!bent.isZero(0.0)) {
+    update.bent = second_order(model, update.estimate, inputs, segment, now.at.predicted.vector());
+    if (!update.bent.isZero(0.0)) {
       update.estimate.covariance = prior.covariance;
-      linear_update(update.estimate.covariance, now.at.by_parameter, weighted_noise + bent);
+      linear_update(update.estimate.covariance, now.at.by_parameter, weighted_noise + update.bent);
     }
   }
-  const Eigen::ArrayXd most = (kUnknown / update.estimate.covariance.diagonal().array().sqrt()).max(1.0);
-  const Eigen::VectorXd reparametrised =
-      (model.log_time_derivatives(prior.mean).array() / model.log_time_derivatives(now.state).array()).min(most);
-  update.estimate.covariance =
-      (reparametrised.asDiagonal() * update.estimate.covariance * reparametrised.asDiagonal()).eval();
+  follow_times(model, prior.mean, update.estimate);
   update.at = std::move(now.at);
   return update;
+}
+
+void follow_times(const MotionModel& model, const Eigen::VectorXd& before, Estimate& estimate) {
+  const Eigen::ArrayXd most = (kUnknown / estimate.covariance.diagonal().array().sqrt()).max(1.0);
+  const Eigen::VectorXd reparametrised =
+      (model.log_time_derivatives(before).array() / model.log_time_derivatives(estimate.mean).array()).min(most);
+  estimate.covariance = (reparametrised.asDiagonal() * estimate.covariance * reparametrised.asDiagonal()).eval();
 }
 
 }  // namespace slipwise

@@ -61,6 +61,19 @@ void FilterRefit::check_loaded(const MotionModel& model, std::size_t kept) const
   }
 }
 
+void BranchBank::check_loaded(const BranchBank& made, Eigen::Index parameters) const {
+  require(archive::same(kinds_, made.kinds_) && archive::same(settings_, made.settings_),
+          "branches are of another model or of other settings");
+  require((branches_.size() > 0) == (made.branches_.size() > 0) &&
+              std::ranges::all_of(branches_.keys(),
+                                  [&](const Branch& branch) {
+                                    return has_size(branch.estimate, parameters) && branch.number <= births_ &&
+                                           branch.estimate.covariance.rows() == parameters &&
+                                           branch.estimate.covariance.cols() == parameters;
+                                  }),
+          "branches have other parameters than their model");
+}
+
 void CausalFilter::check_loaded(const CausalFilter& made) const {
   const Eigen::Index size = made.model_.size();
   require(archive::same(model_, made.model_) && archive::same(settings_, made.settings_) &&
@@ -71,6 +84,7 @@ void CausalFilter::check_loaded(const CausalFilter& made) const {
           "a filter has other parameters than its model");
   require(speeds_.v > 0.0 && speeds_.omega > 0.0 && slip_std_.allFinite(), "a filter has no prior");
   state_.scores.check_loaded(size);
+  branches_.check_loaded(made.branches_, size);
   if (refit_) {
     require(refit_->slip_std.size() == slip_std_.size() && refit_->until > kept_.size(), "a refit is overdue");
     refit_->work.check_loaded(model_, kept_.size());

@@ -205,6 +205,8 @@ void ModelAverage::reweigh() {
   }
   const std::vector<IekfUpdate>& updates = present(learning_).updates;
   update_ = updates[filters_.heaviest()];
+  const BranchBank& branches = filters_[filters_.heaviest()].branches();
+  change_.alarm = change_.alarm || (branches.follow() && branches.changed());
   filters_.learn(common_log_scores(filters_.weights(), updates), settings_.weighting);
   if (undecided_ > 0) {
     --undecided_;

@@ -264,7 +264,7 @@ void MotionLearner::publish(const DrivenSegment& segment) {
 /// Predicts a target from what was known before it, then holds it against what was measured.
 void MotionLearner::judge(const TargetSegment& target) {
   const double horizon = settings_.stream.horizons[target.horizon];
-  const Knowledge& known = known_.at(target.driven.segment.start - std::max(horizon, kReady));
+  const Knowledge& known = known_.at(target.driven.segment.start - settings_.stream.age_of_known(horizon));
   const DrivenSegment driven =
       known.sources ? measured_by(*known.sources, target, known.motion->noise_scale) : target.driven;
   const Segment& segment = driven.segment;

@@ -325,7 +325,7 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
   if (!by_wheels) {
     set_actuator_state(segment);
   }
-  const double known = segment.start - (horizon ? std::max(*horizon, kReady) : 0.0);
+  const double known = segment.start - (horizon ? settings_.age_of_known(*horizon) : 0.0);
   InputHistory driving = by_wheels ? wheels_.slice(path_start(segment) - kWheelsBack, segment.end, SliceKind::Wheels)
                                    : commanded(segment, kLookBack, known);
   return {.inputs = std::move(driving), .segment = std::move(segment), .known_at = known_at};

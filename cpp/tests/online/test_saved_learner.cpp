@@ -47,5 +47,36 @@ TEST_CASE("what is sealed but no learner is refused, however it ends") {
   CHECK_NOTHROW(MotionLearner::load(archive::sealed(body)));
 }
 
+TEST_CASE("branches go on from where they were saved, to the byte") {
+  for (const bool from_commands : {false, true}) {
+    CAPTURE(from_commands);
+    LearnerSettings settings = learner_settings(from_commands);
+    settings.hypotheses.average.change.detect = false;
+    settings.hypotheses.filter.branches.follow = true;
+    const Recording run = streamed_robot(8, 60.0);
+    MotionLearner whole(settings);
+    whole.start_run();
+    push(whole, run);
+    Recording first;
+    Recording second;
+    const double half = run.poses[run.poses.size() / 2].t;
+    const auto split = [half](const auto& all, auto& before, auto& after) {
+      for (const auto& each : all) {
+        (each.t < half ? before : after).push_back(each);
+      }
+    };
+    split(run.commands, first.commands, second.commands);
+    split(run.wheels, first.wheels, second.wheels);
+    split(run.poses, first.poses, second.poses);
+    MotionLearner begun(settings);
+    begun.start_run();
+    push(begun, first);
+    MotionLearner loaded = MotionLearner::load(begun.save());
+    CHECK(loaded.save() == begun.save());
+    push(loaded, second);
+    CHECK(loaded.save() == whole.save());
+  }
+}
+
 }  // namespace
 }  // namespace slipwise

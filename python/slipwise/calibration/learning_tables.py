@@ -161,6 +161,7 @@ class ChangeTable(Section):
     """Finding a change of terrain: a change that is none costs a few seconds of learning."""
 
     detect: bool = True
+    branches: bool = False  # in its place, filters compete in which slip jumped at any time
 
 
 class SegmentTable(Section):

@@ -124,7 +124,13 @@ class Settings(Section):
         noise.adapt = table.adapt
         settings.prior, settings.iekf, settings.noise = prior, iekf, noise
         settings.force = self.body_force.law()
+        settings.branches = self._branches()
         return settings
+
+    def _branches(self) -> _core.BranchSettings:
+        branches = _core.BranchSettings()
+        branches.follow = self.change.branches and not self.body_force.learned
+        return branches
 
     def average_settings(self) -> _core.ModelAverageSettings:
         """Return the core's settings of model averaging, and of finding a change of terrain.
@@ -132,7 +138,7 @@ class Settings(Section):
         Where a force is learned, sudden changes count as force, and no terrain is looked for.
         """
         settings, change = _core.ModelAverageSettings(), _core.ChangeSettings()
-        change.detect = self.change.detect and not self.body_force.learned
+        change.detect = self.change.detect and not (self.body_force.learned or self.change.branches)
         settings.change = change
         return settings
 

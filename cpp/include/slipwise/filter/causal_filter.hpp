@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "slipwise/filter/body_force.hpp"
+#include "slipwise/filter/branch_bank.hpp"
 #include "slipwise/filter/causal_filter_settings.hpp"
 #include "slipwise/filter/filter_refit.hpp"
 #include "slipwise/filter/filter_state.hpp"
@@ -40,6 +41,8 @@ class CausalFilter {
   bool refit_slice();
   /// Whether a refit took effect with the last segment.
   bool refitted() const { return refitted_; }
+  /// The ways in which slip may have jumped, where it may.
+  const BranchBank& branches() const { return branches_; }
 
   /// Gives the slip parameters `fraction` of their prior variance back and keeps their mean. Lag, delay and clock are
   /// the robot's, not the terrain's: they stay as learned.
@@ -77,7 +80,7 @@ class CausalFilter {
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.settings_, self.speeds_, self.started_, self.state_, self.before_, self.kept_, self.next_refit_,
       self.full_);
-    a(self.slip_std_, self.stated_, self.refit_, self.refitted_, self.force_, self.force_at_);
+    a(self.slip_std_, self.stated_, self.refit_, self.refitted_, self.force_, self.force_at_, self.branches_);
   }
 
  private:
@@ -87,6 +90,8 @@ class CausalFilter {
   void keep(const InputHistory& inputs, const Segment& segment);
   void end_refit();
   void start_from_here();
+  void start_refits(const Estimate& before);
+  IekfUpdate follow_branches(const InputHistory& inputs, const Segment& segment);
 
   /// A refit that is under way.
   struct Refit {
@@ -110,6 +115,7 @@ class CausalFilter {
   bool refitted_ = false;
   BodyForce force_;
   double force_at_;  ///< [s] middle of the segment that spoke of it last
+  BranchBank branches_;
 };
 
 /// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.

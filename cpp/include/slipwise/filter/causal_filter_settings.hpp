@@ -9,11 +9,17 @@
 
 namespace slipwise {
 
+/// Slip that may jump (`BranchBank`).
+struct BranchSettings {
+  bool follow = false;
+};
+
 struct CausalFilterSettings {
   PriorSettings prior = {};
   IekfSettings iekf = {};
   NoiseSettings noise = {};
   BodyForceSettings force = {};
+  BranchSettings branches = {};
 };
 
 }  // namespace slipwise

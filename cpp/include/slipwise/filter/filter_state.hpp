@@ -8,6 +8,12 @@
 
 namespace slipwise {
 
+/// R of a measured segment by the shape of the noise alone, and as large as it was learned to be.
+struct SegmentNoise {
+  Eigen::Matrix3d expected;
+  Eigen::Matrix3d scaled;
+};
+
 struct FilterState {
   Estimate estimate;
   NoiseScale noise_scale;
@@ -19,6 +25,9 @@ struct FilterState {
   /// Learns one segment.
   IekfUpdate learn(const MotionModel& model, const InputHistory& inputs, const Segment& segment,
                    const NoiseSettings& noise, const IekfSettings& iekf);
+
+  /// Goes on from an update: it also teaches how large noise is, and how scores scatter.
+  void take(const IekfUpdate& update, const Segment& segment, const SegmentNoise& noise);
 
   /// Names what is saved.
   template <class Self, class Archive>

@@ -31,6 +31,8 @@ struct IekfUpdate {
   double weight;                          ///< Huber weight, 1 where nothing was unusual, 0 where rejected
   Status status;
   SegmentLinearization at = {};  ///< at the estimate's mean, as `iekf_update` returns it
+  /// Of the chart, what the actuator bends away from its linearisation: added to the noise where the covariance learns.
+  Eigen::Matrix3d bent = Eigen::Matrix3d::Zero();
 };
 
 /// `noise` is the covariance R of the segment's measured chart. \throws std::invalid_argument when sizes do not fit.
@@ -40,5 +42,8 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
 IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
                        const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
                        const IekfSettings& settings = {});
+
+/// Covariance in the coordinates of times after their means moved from `before` (derivations/filter.md).
+void follow_times(const MotionModel& model, const Eigen::VectorXd& before, Estimate& estimate);
 
 }  // namespace slipwise

@@ -2,6 +2,7 @@
 // From measurements as they arrive to segments that can be learned: ordered, cleaned, bounded.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <deque>
@@ -18,6 +19,7 @@
 #include "slipwise/online/gyro_buffer.hpp"
 #include "slipwise/online/hold_times.hpp"
 #include "slipwise/online/input_buffer.hpp"
+#include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/measurement.hpp"
 #include "slipwise/online/motion_evidence.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
@@ -42,11 +44,16 @@ struct StreamSettings {
   double unknown_after = 0.5;                      ///< an input is unknown once it is older than this [s]
   double latency = 0.5;                            ///< streams may be late relative to each other by up to this [s]
   std::vector<double> horizons = {1.0, 2.0, 5.0};  ///< of the predictions that are held against what was measured [s]
-  Pose2 sensor = {};                               ///< where the pose sensor is known to sit in base_link
-  std::optional<CarPrior> car = {};                ///< commands are throttle (v) and steering (omega) of a car
-  bool heading_only = false;                       ///< no poses come: turns of a gyro alone are learned from
+  /// The predictions use parameters as they were known so long before their start [s]; without it, a horizon before.
+  std::optional<double> embargo = {};
+  Pose2 sensor = {};                 ///< where the pose sensor is known to sit in base_link
+  std::optional<CarPrior> car = {};  ///< commands are throttle (v) and steering (omega) of a car
+  bool heading_only = false;         ///< no poses come: turns of a gyro alone are learned from
   /// Of all sources of poses, where there are several or their fixes count; the first is sources[0].
   std::vector<SourceSettings> sources = {};
+
+  /// From what is known until a prediction over `horizon` [s] starts.
+  double age_of_known(double horizon) const { return std::max(embargo.value_or(horizon), kReady); }
 };
 
 /// A segment whose prediction is held against what was measured.

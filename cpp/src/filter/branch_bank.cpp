@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+// Births of branches, their weights, and one update of all of them.
+#include "slipwise/filter/branch_bank.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+#include <utility>
+
+#include "slipwise/filter/linear_update.hpp"
+#include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/tuning.hpp"
+#include "slipwise/segment/carried_linearization.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
+
+namespace slipwise {
+namespace {
+
+SLIPWISE_TUNING(kMotion, 800.0);                 // [s] of motion from one jump to the next, on average
+SLIPWISE_TUNING(kMost, std::size_t{8});          // branches that are kept
+constexpr std::array kSizes{0.1, 0.35};          // standard deviations of jumps, as fractions of the motion
+SLIPWISE_TUNING(kMinor, 0.1);                    // as large are those of the other terms of a channel
+SLIPWISE_TUNING(kShape, 2.0);                    // of the size, the part of slip as it was that a jump adds or takes
+SLIPWISE_TUNING(kForgetting, 0.05);              // for each jump, births in which all slip is forgotten
+SLIPWISE_TUNING(kForgetAfter, std::size_t{20});  // segments before the first of them
+SLIPWISE_TUNING(kMoves, 0.02);                   // of the reference speeds; slower robots are parked
+SLIPWISE_TUNING(kTempered, 0.5);                 // power of the number of segments that count as one
+
+/// The slip of one channel, by the size of its terms' jumps where the channel's most is 1.
+JumpingChannel jumping(const Basis& basis, Channel channel, std::string_view main) {
+  JumpingChannel found;
+  for (std::size_t i = basis.begin(channel); i < basis.end(channel); ++i) {
+    const bool is_main = basis.parameter_name(i) == main;
+    found.terms.push_back(static_cast<Eigen::Index>(i));
+    found.sizes.push_back(is_main ? 1.0 : kMinor);
+    found.has_main = found.has_main || is_main;
+  }
+  return found;
+}
+
+/// Seconds of motion at the reference speeds.
+double seconds_of_motion(const SegmentPath& path, const ReferenceSpeeds& speeds) {
+  double seconds = 0.0;
+  for (const ActuatorStep& step : path.drive) {
+    const double fast = std::hypot(step.forward, step.left) / speeds.v + std::abs(step.turn) / speeds.omega;
+    seconds += std::min(fast, step.duration);
+  }
+  return seconds;
+}
+
+/// Mean and covariance of a mixture.
+Estimate merged(const std::vector<Branch>& branches, const Eigen::VectorXd& weights) {
+  if (branches.size() == 1) {
+    return branches.front().estimate;
+  }
+  const Eigen::Index size = branches.front().estimate.mean.size();
+  Estimate all{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+  for (std::size_t i = 0; i < branches.size(); ++i) {
+    all.mean += weights[static_cast<Eigen::Index>(i)] * branches[i].estimate.mean;
+  }
+  for (std::size_t i = 0; i < branches.size(); ++i) {
+    const Eigen::VectorXd away = branches[i].estimate.mean - all.mean;
+    all.covariance +=
+        weights[static_cast<Eigen::Index>(i)] * (branches[i].estimate.covariance + away * away.transpose());
+  }
+  return all;
+}
+
+/// Each channel may jump in its terms, and in proportion to what it was: ground that is more slippery in one term is so
+/// in all of them.
+Estimate after_jump(Estimate known, const JumpKind& kind, double size, const Eigen::VectorXd& unit) {
+  for (const JumpingChannel& channel : kind) {
+    const Eigen::VectorXd shape = kShape * size * known.mean(channel.terms);
+    known.covariance(channel.terms, channel.terms) += shape * shape.transpose();
+    for (std::size_t i = 0; i < channel.terms.size(); ++i) {
+      const Eigen::Index term = channel.terms[i];
+      known.covariance(term, term) += std::pow(size * channel.sizes[i] * unit[term], 2);
+    }
+  }
+  return known;
+}
+
+/// Slip is as before any data; what is the robot's is as the mixture knows it.
+Estimate forgotten(const Estimate& known, const Estimate& prior, Eigen::Index slip) {
+  const Eigen::Index robot = known.mean.size() - slip;
+  Estimate all = prior;
+  all.mean.tail(robot) = known.mean.tail(robot);
+  all.covariance.bottomRightCorner(robot, robot) = known.covariance.bottomRightCorner(robot, robot);
+  return all;
+}
+
+/// One branch, by the linearisation that all share; a residual counts as by the rule of the IEKF.
+void update_branch(const MotionModel& model, Estimate& known, const IekfUpdate& shared, const Segment& segment,
+                   const Eigen::Matrix3d& noise, const IekfSettings& settings) {
+  const auto& by_parameter = shared.at.by_parameter;
+  const Eigen::Vector3d left =
+      segment.measured.vector() - shared.at.predicted.vector() - by_parameter * (known.mean - shared.estimate.mean);
+  const double nis = normalised_square(left, innovation_covariance(known.covariance, by_parameter, noise));
+  if (!(nis <= settings.gate)) {
+    return;
+  }
+  const Eigen::Matrix3d weighted = noise * std::max(std::sqrt(nis) / settings.huber, 1.0);
+  const Estimate before = known;
+  known.mean += linear_update(known.covariance, by_parameter, weighted) * left;
+  if (!shared.bent.isZero(0.0)) {
+    known.covariance = before.covariance;
+    linear_update(known.covariance, by_parameter, weighted + shared.bent);
+  }
+  follow_times(model, before.mean, known);
+}
+
+SegmentLinearization moved(SegmentLinearization at, const Eigen::VectorXd& step) {
+  const Eigen::Vector3d by = at.by_parameter * step;
+  at.predicted = {at.predicted.x + by.x(), at.predicted.y + by.y(), at.predicted.theta + by.z()};
+  return at;
+}
+
+}  // namespace
+
+BranchBank::BranchBank(const MotionModel& model, const BranchSettings& settings) : settings_(settings) {
+  if (!settings.follow) {
+    return;
+  }
+  const JumpingChannel yaw = jumping(model.basis(), Channel::Ang, "ang.w");
+  const JumpingChannel forward = jumping(model.basis(), Channel::Lon, "lon.V");
+  if (yaw.has_main) {
+    kinds_.push_back({yaw});
+  }
+  if (forward.has_main) {
+    kinds_.push_back({forward});
+  }
+  if (kinds_.size() > 1) {
+    kinds_.push_back({yaw, forward, jumping(model.basis(), Channel::Lat, "lat.V*w")});
+  }
+}
+
+Estimate BranchBank::mixture() const { return merged(branches_.keys(), branches_.weights()); }
+
+void BranchBank::restart(const Estimate& known) {
+  if (!follow()) {
+    return;
+  }
+  branches_ = {};
+  branches_.add({.estimate = known, .number = ++births_}, 1.0);
+  led_by_ = known_ = births_;
+  held_ = 0;
+  leader_changed_ = changed_ = false;
+}
+
+void BranchBank::correct_leader(const Estimate& better) {
+  if (follow()) {
+    branches_[branches_.heaviest()].estimate = better;
+  }
+}
+
+bool BranchBank::change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
+  if (!follow()) {
+    return true;
+  }
+  const std::size_t leader = branches_.heaviest();
+  auto changed = change_slip_prior(branches_[leader].estimate, old_std, new_std);
+  if (!changed) {
+    return false;
+  }
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    auto other = i == leader ? std::move(changed) : change_slip_prior(branches_[i].estimate, old_std, new_std);
+    if (other) {
+      branches_[i].estimate = std::move(*other);
+    }
+  }
+  return true;
+}
+
+/// With the hazard of so many seconds of motion, slip jumped just before the segment.
+void BranchBank::bear(const BranchSegment& driven, double motion) {
+  const double hazard = -std::expm1(-motion / kMotion);
+  const Estimate now = mixture();
+  const double jumped = branches_.log_evidence() + std::log(hazard);
+  branches_.weigh(Eigen::VectorXd::Constant(branches_.weights().size(), std::log1p(-hazard)));
+  const double share = std::log(static_cast<double>(kinds_.size() * kSizes.size()));
+  for (const JumpKind& kind : kinds_) {
+    for (const double size : kSizes) {
+      branches_.add({.estimate = after_jump(now, kind, size, driven.unit), .number = ++births_}, 0.0, jumped - share);
+    }
+  }
+  if (segments_ > kForgetAfter) {
+    const Eigen::Index slip = driven.unit.size();
+    branches_.add({.estimate = forgotten(now, driven.prior, slip), .number = ++births_}, 0.0,
+                  jumped + std::log(kForgetting));
+  }
+}
+
+void BranchBank::prune() {
+  std::vector<std::size_t> places(branches_.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  if (places.size() > kMost) {
+    const auto heavier = [&](std::size_t a, std::size_t b) {
+      return branches_.weights()[static_cast<Eigen::Index>(a)] > branches_.weights()[static_cast<Eigen::Index>(b)];
+    };
+    std::ranges::stable_sort(places, heavier);
+    places.resize(kMost);
+    std::ranges::sort(places);
+  }
+  branches_ = branches_.chosen(places);
+  branches_.weigh(Eigen::VectorXd::Zero(branches_.weights().size()));
+}
+
+void BranchBank::follow_leader() {
+  const std::size_t heaviest = branches_.heaviest();
+  const Eigen::VectorXd& weights = branches_.weights();
+  const bool leads = weights[static_cast<Eigen::Index>(heaviest)] > 0.5;
+  leader_changed_ = leads && branches_[heaviest].number != led_by_;
+  led_by_ = leads ? branches_[heaviest].number : led_by_;
+  double young = 0.0;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    young += branches_[i].number > known_ ? weights[static_cast<Eigen::Index>(i)] : 0.0;
+  }
+  held_ = young > 0.5 ? held_ + 1 : 0;
+  changed_ = held_ == kHeld;
+  if (changed_) {
+    known_ = births_;
+    held_ = 0;
+  }
+}
+
+/// By the linearisation at `mean`, where the residual is `innovation`. Neighbours that err alike count for less.
+void BranchBank::weigh(const SegmentLinearization& at, const Eigen::VectorXd& mean, const Eigen::Vector3d& innovation,
+                       const Eigen::Matrix3d& noise, double alike) {
+  const double rate = std::pow(std::max(alike, 1.0), -kTempered);
+  Eigen::VectorXd scores(branches_.weights().size());
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    const Estimate& known = branches_[i].estimate;
+    const Eigen::Vector3d left = innovation - at.by_parameter * (known.mean - mean);
+    const Eigen::Matrix3d spread = innovation_covariance(known.covariance, at.by_parameter, noise);
+    scores[static_cast<Eigen::Index>(i)] = rate * student_log_score(normalised_square(left, spread), spread);
+  }
+  branches_.weigh(scores);
+}
+
+/// The most probable mean of the mixture is where all branches are updated.
+IekfUpdate BranchBank::update_all(const MotionModel& model, const BranchSegment& driven, SegmentLinearization at,
+                                  const Eigen::Matrix3d& noise, const IekfSettings& settings) {
+  IekfUpdate update = iekf_update(model, mixture(), driven.inputs, driven.segment, std::move(at), noise, settings);
+  if (branches_.size() == 1) {
+    branches_[0].estimate = update.estimate;
+    return update;
+  }
+  if (update.weight == 0.0) {
+    return update;
+  }
+  for (Branch& branch : branches_.keys()) {
+    update_branch(model, branch.estimate, update, driven.segment, noise, settings);
+  }
+  const Eigen::VectorXd found = update.estimate.mean;
+  update.estimate = mixture();
+  update.at = moved(std::move(update.at), update.estimate.mean - found);
+  return update;
+}
+
+IekfUpdate BranchBank::learn(const MotionModel& model, const BranchSegment& driven,
+                             const CausalFilterSettings& settings, FilterState& state) {
+  const Segment& segment = driven.segment;
+  const Eigen::VectorXd mean = state.estimate.mean;
+  auto at = linearize_segment(model, mean, driven.inputs, segment);
+  const Eigen::Matrix3d expected = expected_noise(at.path, segment.measured, settings.noise.shape);
+  const Eigen::Matrix3d noise = scaled_covariance(expected, scale_for(at.path, state.noise_scale.value()));
+  const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
+  const Eigen::Matrix3d covariance = innovation_covariance(state.estimate.covariance, at.by_parameter, noise);
+  const double motion = seconds_of_motion(at.path, driven.speeds);
+  ++segments_;
+  if (motion > kMoves * (segment.end - segment.start)) {
+    bear(driven, motion);
+  }
+  weigh(at, mean, innovation, noise, driven.alike);
+  prune();
+  const Eigen::VectorXd found = mixture().mean;
+  if (found != mean) {
+    auto straight = carried(at, model, found - mean, noise);
+    at = straight ? std::move(*straight) : linearize_segment(model, found, driven.inputs, segment);
+  }
+  IekfUpdate update = update_all(model, driven, std::move(at), noise, settings.iekf);
+  state.take(update, segment, {.expected = expected, .scaled = noise});
+  update.innovation = innovation;
+  update.innovation_covariance = covariance;
+  update.nis = normalised_square(innovation, covariance);
+  follow_leader();
+  return update;
+}
+
+}  // namespace slipwise
