@@ -91,17 +91,23 @@ Estimate forgotten(const Estimate& known, const Estimate& prior, Eigen::Index sl
   return all;
 }
 
+/// What was measured, and its noise.
+struct MeasuredChart {
+  Eigen::Vector3d value;
+  const Eigen::Matrix3d& noise;
+};
+
 /// One branch, by the linearisation that all share; a residual counts as by the rule of the IEKF.
-void update_branch(const MotionModel& model, Estimate& known, const IekfUpdate& shared, const Segment& segment,
-                   const Eigen::Matrix3d& noise, const IekfSettings& settings) {
+void update_branch(const MotionModel& model, Estimate& known, const IekfUpdate& shared, const MeasuredChart& measured,
+                   const IekfSettings& settings) {
   const auto& by_parameter = shared.at.by_parameter;
   const Eigen::Vector3d left =
-      segment.measured.vector() - shared.at.predicted.vector() - by_parameter * (known.mean - shared.estimate.mean);
-  const double nis = normalised_square(left, innovation_covariance(known.covariance, by_parameter, noise));
+      measured.value - shared.at.predicted.vector() - by_parameter * (known.mean - shared.estimate.mean);
+  const double nis = normalised_square(left, innovation_covariance(known.covariance, by_parameter, measured.noise));
   if (!(nis <= settings.gate)) {
     return;
   }
-  const Eigen::Matrix3d weighted = noise * std::max(std::sqrt(nis) / settings.huber, 1.0);
+  const Eigen::Matrix3d weighted = measured.noise * std::max(std::sqrt(nis) / settings.huber, 1.0);
   const Estimate before = known;
   known.mean += linear_update(known.covariance, by_parameter, weighted) * left;
   if (!shared.bent.isZero(0.0)) {
@@ -159,15 +165,14 @@ bool BranchBank::change_prior(const Eigen::VectorXd& old_std, const Eigen::Vecto
   if (!follow()) {
     return true;
   }
-  const std::size_t leader = branches_.heaviest();
-  auto changed = change_slip_prior(branches_[leader].estimate, old_std, new_std);
-  if (!changed) {
+  Estimate& leader = branches_[branches_.heaviest()].estimate;
+  const auto better = change_slip_prior(leader, old_std, new_std);
+  if (!better) {
     return false;
   }
-  for (std::size_t i = 0; i < branches_.size(); ++i) {
-    auto other = i == leader ? std::move(changed) : change_slip_prior(branches_[i].estimate, old_std, new_std);
-    if (other) {
-      branches_[i].estimate = std::move(*other);
+  for (Branch& branch : branches_.keys()) {
+    if (auto changed = &branch.estimate == &leader ? better : change_slip_prior(branch.estimate, old_std, new_std)) {
+      branch.estimate = std::move(*changed);
     }
   }
   return true;
@@ -251,7 +256,8 @@ IekfUpdate BranchBank::update_all(const MotionModel& model, const BranchSegment&
     return update;
   }
   for (Branch& branch : branches_.keys()) {
-    update_branch(model, branch.estimate, update, driven.segment, noise, settings);
+    update_branch(model, branch.estimate, update, {.value = driven.segment.measured.vector(), .noise = noise},
+                  settings);
   }
   const Eigen::VectorXd found = update.estimate.mean;
   update.estimate = mixture();
