@@ -237,9 +237,9 @@ def main() -> int:
             print_steps(found, learners, "position")
             print_coverage(found, learners)
         long = [("rough", 5.0), *(("5 s", seconds) for seconds in LASTING)]
-        kinds = itertools.product(("wheel", "command"), long, ("today", "branches", "unwatched"), range(4))
+        steady = itertools.product(("wheel", "command"), long, ("today", "branches", "unwatched"), range(4))
         jobs = [
-            Job(noise, name, 1.0, seed, way, 0.0, 20.0, lasts) for name, (noise, lasts), way, seed in kinds
+            Job(noise, name, 1.0, seed, way, 0.0, 20.0, lasts) for name, (noise, lasts), way, seed in steady
         ]
         print("\nOne ground for 20 minutes\n")
         print_lasting(dict(zip(jobs, pool.map(learned, jobs), strict=True)))

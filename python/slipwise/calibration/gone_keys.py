@@ -55,6 +55,7 @@ GONE = {
     "body_force.time_constant": _CONSTANT,
     "body_force.std": _CONSTANT,
     "change.detect": _CONSTANT,
+    "change.branches": _CONSTANT,
     "smoothing.drift": _CONSTANT,
     "smoothing.length": _CONSTANT,
 }  # fmt: skip

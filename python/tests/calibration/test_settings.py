@@ -61,6 +61,7 @@ learn = false
 
 [change]
 detect = false
+branches = true
 
 [smoothing]
 smooth = true
@@ -153,6 +154,8 @@ def test_every_key_and_constant_is_accepted_and_reaches_its_place() -> None:
     drift = settings.smoothing.drift_settings()
     assert (drift.drift, drift.length) == (_core.Drift.RandomWalk, 20.0)
     assert not settings.average_settings().change.detect
+    assert settings.filter_settings().branches.follow
+    assert not Settings().filter_settings().branches.follow
     learner = core_settings(settings, "command", (1.0, 4.0))
     assert not learner.learn_disturbance
     assert (learner.stream.from_commands, learner.stream.segment_length) == (True, 1.5)
