@@ -13,6 +13,7 @@ from slipwise.live.command_ends import CommandEnds
 from slipwise.live.command_stops import SAID_EVERY, LiveCommandStops
 from slipwise.live.gates import Gates
 from slipwise.live.move_adviser import Turning
+from slipwise.live.recent_log import RecentLog
 from slipwise.live.said import Said
 from slipwise.live.samples import (
     Command,
@@ -49,6 +50,7 @@ class Intake:
         self._input = Command if input_name == "command" else Wheels
         looks = input_name == "command" and command_timeout is None
         self._stops = LiveCommandStops(learner.settings.segment.unknown_after) if looks else None
+        self._recent = RecentLog(input_name, learner.settings.segment.unknown_after)
         self._clock = ClockWatch()
         self.surfaces = SurfaceWatch(learner, said)
         self.turning = Turning()
@@ -96,17 +98,20 @@ class Intake:
             self._gates.restart()
             self.surfaces.start_run(f"after the clock was set at {self._clock.newest:.3f} s")
             self._ends.restart()
+            self._recent.restart()
             if self._stops is not None:
                 self._stops.restart()
         for each in taken:
+            self._recent.take(each)
             for zero in self._ends.before(each):
                 self._push(zero)
             self._gates.take(each)
             self._push(each)
 
     def contradictions(self) -> tuple[Finding, ...]:
-        """Return what a stream shows that the learner does not keep: how commands end."""
-        return () if self._stops is None else self._stops.found()
+        """Return what a stream shows that the learner does not keep, such as how commands end."""
+        stops = () if self._stops is None else self._stops.found()
+        return (*stops, *self._recent.found())
 
     def events(self) -> list[Event]:
         """Return what the learner has to say since the last call; what it rejected is counted."""
@@ -120,6 +125,7 @@ class Intake:
         self._clock.restart()
         self._ends.restart()
         self._gates.restart()
+        self._recent.restart()
         if self._stops is not None:
             self._stops.restart()
 

@@ -31,6 +31,8 @@ WANTED: dict[str, dict[str, tuple[str, str]]] = {
     "wheel_twist_zero.mcap": {"zero-twist": ("/odom is always zero", "differences of its poses")},
     "quat_zero_always.mcap": {"no-rotation": ("all 400 poses", "only their positions")},
     "yaw_wrap_spike_3hz.mcap": {"wheel-spikes": ("wheel speeds jump", "Unwrap")},
+    "unrelated_wheels.csv": {"unrelated": ("the wheels do not explain the poses", "one robot")},
+    "antenna_with_imu.mcap": {"sensor-off-centre": ("0.45 m ahead", "sensor_extrinsics.x=0.45")},
     "wheels_10hz.csv.gz": {},
     "wheels_rad_per_min.csv": {"implausible": ("0.0031 times as far", "--wheel-scale")},
     "split_one_lost": {"missing-file": ("split_1.mcap", "whole folder")},

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 from slipwise import _core
@@ -67,6 +68,8 @@ WHOLE: tuple[Check, ...] = (
     ClockOffset(),
     TwoSources(),
 )
+#: What a live node looks for in its last minutes; two sources it watches sample by sample.
+OF_STREAM: tuple[Check, ...] = (WheelSpikes(), EchoedCommands(), FrozenPoses(), ClockOffset())
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(
     {c.kind: c for c in (*FIRST, *THEN, *WHOLE, *CLOCKS, *TOPICS, *READINGS)}.values()
@@ -150,7 +153,12 @@ def findings_of(
 
 def findings_of_log(whole: WholeLog) -> tuple[Finding, ...]:
     """Return what only whoever has the whole log knows, such as how commands end."""
-    looked = (check.look_at(whole) for check in WHOLE)
+    return looked_at(whole, WHOLE)
+
+
+def looked_at(whole: WholeLog, checks: Iterable[Check]) -> tuple[Finding, ...]:
+    """Return what some checks find in a whole log, or in the last minutes of a stream."""
+    looked = (check.look_at(whole) for check in checks)
     return tuple(found for found in looked if found is not None)
 
 

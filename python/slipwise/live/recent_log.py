@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Keeps the last two minutes of what a live node hears, to look at them as at a log."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+
+import numpy as np
+
+from slipwise.live.samples import Command, Pose, Stamped, Wheels
+from slipwise.logs.findings.checks import OF_STREAM, looked_at
+from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.seen import WholeLog
+from slipwise.logs.log import Inputs, Log, Poses, Run, empty_poses
+
+KEPT = 120.0  # s
+LOOKED_EVERY = 60.0  # s
+MOST = 20_000  # samples of a kind
+
+_Row = tuple[float, ...]
+
+
+class RecentLog:
+    """Commands, wheels and poses of one source as they came.
+
+    Args:
+        input_name: "command" or "wheel", the input that is learned from.
+        unknown_after: an input is unknown once it is older than this [s].
+    """
+
+    def __init__(self, input_name: str, unknown_after: float) -> None:
+        self._input, self._unknown_after = input_name, unknown_after
+        self._rows: dict[type, deque[_Row]] = {kind: deque(maxlen=MOST) for kind in (Command, Wheels, Pose)}
+        self._newest, self._looked_at = -math.inf, math.nan
+        self._found: dict[str, Finding] = {}
+
+    def take(self, sample: Stamped) -> None:
+        """Take a sample; one that is not later than those of its kind says nothing."""
+        if isinstance(sample, Pose):
+            row: _Row = (sample.t, sample.x, sample.y, sample.yaw)
+        elif isinstance(sample, Command | Wheels):
+            row = (sample.t, sample.v, sample.vy, sample.omega)
+        else:
+            return
+        rows = self._rows[type(sample)]
+        if not all(map(math.isfinite, row)) or (rows and row[0] <= rows[-1][0]):
+            return
+        rows.append(row)
+        self._newest = max(self._newest, row[0])
+        while rows[0][0] < self._newest - KEPT:
+            rows.popleft()
+
+    def restart(self) -> None:
+        """Another recording begins, or the clock was set."""
+        for rows in self._rows.values():
+            rows.clear()
+        self._newest, self._looked_at = -math.inf, math.nan
+
+    def found(self) -> tuple[Finding, ...]:
+        """Return what was found so far; the last minutes are looked at now and then."""
+        if math.isnan(self._looked_at):
+            self._looked_at = self._newest
+        if self._newest >= self._looked_at + LOOKED_EVERY:
+            self._looked_at = self._newest
+            whole = WholeLog(self._log(), self._input, self._unknown_after)
+            for each in looked_at(whole, OF_STREAM):
+                self._found.setdefault(each.kind, each)
+        return tuple(self._found.values())
+
+    def _log(self) -> Log:
+        commands, wheels = (self._inputs(kind) for kind in (Command, Wheels))
+        rows = self._rows[Pose]
+        poses = empty_poses()
+        if rows:
+            t, x, y, yaw = np.ascontiguousarray(np.array(rows).T)
+            poses = Poses(t, x, y, yaw, np.zeros(len(t), np.int64))
+        return Log(runs=(Run("live", commands, wheels, poses),))
+
+    def _inputs(self, kind: type) -> Inputs | None:
+        rows = self._rows[kind]
+        return Inputs(*np.ascontiguousarray(np.array(rows).T)) if rows else None

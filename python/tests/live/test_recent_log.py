@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A live node finds in its last two minutes what a log shows as a whole, and says it once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from contradictory_logs import SKID_STEERED, sound_log
+from faulty_logs import FAULTS, with_fault
+
+from slipwise.live.recent_log import KEPT, RecentLog
+from slipwise.live.samples import Command, Pose, Stamped, Wheels
+from slipwise.logs import Log
+
+LOG = sound_log(replace(SKID_STEERED, seconds=150.0))
+
+
+def samples_of(log: Log) -> list[Stamped]:
+    (run,) = log.runs
+    samples: list[Stamped] = [Pose(*row) for row in zip(*_columns(run.poses, "x", "y", "yaw"), strict=True)]
+    for kind, inputs in ((Command, run.commands), (Wheels, run.wheels)):
+        rows = zip(*_columns(inputs, "v", "omega", "vy"), strict=True)
+        samples += [kind(t, v, omega, vy) for t, v, omega, vy in rows]
+    return sorted(samples, key=lambda each: each.t)
+
+
+def _columns(series: object, *names: str) -> list[list[float]]:
+    return [np.asarray(getattr(series, name)).tolist() for name in ("t", *names)]
+
+
+def kinds_of(log: Log) -> set[str]:
+    recent, found = RecentLog("wheel", 0.5), set[str]()
+    for sample in samples_of(log):
+        recent.take(sample)
+        found |= {each.kind for each in recent.found()}
+    return found
+
+
+@pytest.mark.parametrize(
+    ("fault", "kind"),
+    [
+        ("spikes of 20 times", "wheel-spikes"),
+        ("odometry echoes the command", "echoed-commands"),
+        ("frozen localiser", "frozen-poses"),
+        ("poses 2 s late", "clock-offset"),
+    ],
+)
+def test_a_fault_is_found_while_the_robot_drives(fault: str, kind: str) -> None:
+    assert kinds_of(with_fault(LOG, FAULTS[fault].change)) == {kind}
+
+
+def test_nothing_is_found_of_a_sound_robot_and_little_is_kept() -> None:
+    recent = RecentLog("wheel", 0.5)
+    for sample in samples_of(LOG):
+        recent.take(sample)
+        assert recent.found() == ()
+    (run,) = recent._log().runs
+    assert run.span[1] - run.span[0] == pytest.approx(KEPT, abs=0.1)
+    recent.restart()
+    assert recent.found() == ()
