@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.fleet.common_course import without_common_course
+from slipwise.fleet.correlated import Series, Walk, trends, walks
 from slipwise.fleet.empirical_bayes import FleetPrior, fleet_prior
 from slipwise.fleet.odd import Estimates, odd_ones
-from slipwise.fleet.random_walk import Walk, random_walk
-from slipwise.fleet.scatter import shared_scatter
 
 Floats = NDArray[np.float64]
 
@@ -112,20 +112,20 @@ def _parameter(
 ) -> ParameterFindings:
     vehicles = list(rows)
     estimate, std = np.empty(len(vehicles)), np.empty(len(vehicles))
-    lines: dict[str, tuple[_Line, Walk | None]] = {}
+    series: dict[str, Series] = {}
     for place, (vehicle, mine) in enumerate(rows.items()):
         value, sigma = table["value"][mine].astype(float), table["std"][mine].astype(float)
         estimate[place], std[place] = pooled(value, sigma)
         if len(mine) >= FEWEST_LOGS:
-            line = _line(table["start"][mine].astype(float) / DAY, value, sigma)
-            if line is not None:
-                lines[vehicle] = line, _walk(table, mine)
+            each = _series(table, mine)
+            if np.ptp(each.days) > 0.0:
+                series[vehicle] = each
     prior = (
         fleet_prior(estimate[:, None], std[:, None, None] ** 2, dof=STUDENT_DOF)
         if len(vehicles) > 1
         else None
     )
-    drifts = _drifts(name, lines)
+    drifts = _drifts(name, series)
     unit = str(table["unit"][min(int(mine[0]) for mine in rows.values())])
     return ParameterFindings(name, unit, tuple(vehicles), estimate, std, prior, tuple(drifts))
 
@@ -162,50 +162,29 @@ def _with_odd(found: Sequence[ParameterFindings]) -> list[ParameterFindings]:
     return compared
 
 
-@dataclass(frozen=True)
-class _Line:
-    """A vehicle's values over days, by weighted least squares."""
-
-    slope: float  # per day
-    std: float  # of the slope, if logs differ as they say
-    excess: float  # variance of the logs about the line, in units of what they say
-    freedom: int
-
-
-def _line(days: Floats, values: Floats, stds: Floats) -> _Line | None:
-    """Return the line through a vehicle's logs; None without time between them."""
-    weight = stds**-2.0
-    centre = np.average(days, weights=weight)
-    moment = float(np.sum(weight * (days - centre) ** 2))
-    if np.ptp(days) <= 0.0 or not math.isfinite(moment) or moment <= 0.0:
-        return None
-    level = np.average(values, weights=weight)
-    slope = float(np.sum(weight * (days - centre) * (values - level))) / moment
-    left = values - level - slope * (days - centre)
-    freedom = len(days) - 2
-    return _Line(slope, moment**-0.5, float(np.sum(weight * left**2)) / freedom, freedom)
-
-
-def _drifts(name: str, lines: Mapping[str, tuple[_Line, Walk | None]]) -> list[Finding]:
-    """Test the trend and the walk of each vehicle.
-
-    The scatter of the logs about their line, that of all vehicles considered, counts where it is larger than
-    the logs say themselves; only then is the test Student's, since only then is a variance estimated.
-    """
-    if not lines:
-        return []
-    shared, freedoms = shared_scatter(
-        np.array([line.excess for line, _ in lines.values()]),
-        np.array([float(line.freedom) for line, _ in lines.values()]),
+def _series(table: Mapping[str, NDArray[Any]], mine: NDArray[Any]) -> Series:
+    """Return a vehicle's logs in the order of time."""
+    order = mine[np.argsort(table["start"][mine], kind="stable")]
+    driven = table["distance"][order].astype(float)
+    return Series(
+        days=table["start"][order].astype(float) / DAY,
+        metres=np.cumsum(driven) - 0.5 * driven,
+        values=table["value"][order].astype(float),
+        stds=table["std"][order].astype(float),
     )
-    found = []
-    for (vehicle, (line, walk)), excess, freedom in zip(lines.items(), shared, freedoms, strict=True):
-        std = line.std * math.sqrt(max(1.0, float(excess)))
-        z = line.slope / std
-        chance = _two_sided(z, float(freedom)) if excess > 1.0 else math.erfc(abs(z) / math.sqrt(2.0))
-        finding = Finding(vehicle, name, "drift", 30.0 * line.slope, 30.0 * std, chance)
-        found.append(_with_walk(finding, walk))
-    return found
+
+
+def _drifts(name: str, series: Mapping[str, Series]) -> list[Finding]:
+    """Test the trend and the walk of each vehicle, less what all vehicles do alike."""
+    left = dict(zip(series, without_common_course(list(series.values())), strict=True))
+    walking = [vehicle for vehicle, each in left.items() if each.walks]
+    walk_of = dict(zip(walking, walks([left[vehicle] for vehicle in walking]), strict=True))
+    return [
+        _with_walk(
+            Finding(vehicle, name, "drift", 30.0 * t.slope, 30.0 * t.std, t.chance), walk_of.get(vehicle)
+        )
+        for vehicle, t in zip(left, trends(list(left.values())), strict=True)
+    ]
 
 
 def _with_walk(finding: Finding, walk: Walk | None) -> Finding:
@@ -220,14 +199,6 @@ def _with_walk(finding: Finding, walk: Walk | None) -> Finding:
     )
 
 
-def _walk(table: Mapping[str, NDArray[Any]], mine: NDArray[Any]) -> Walk | None:
-    """Return the random walk of a parameter in the distance driven; None where the logs tell none."""
-    order = mine[np.argsort(table["start"][mine], kind="stable")]
-    driven = table["distance"][order].astype(float)
-    middle = np.cumsum(driven) - 0.5 * driven
-    return random_walk(middle, table["value"][order].astype(float), table["std"][order].astype(float))
-
-
 def _combined(chances: Sequence[float], weights: Sequence[float]) -> float:
     """Return the chance of tests that may depend on each other, taken together (Liu and Xie 2020).
 
@@ -235,19 +206,3 @@ def _combined(chances: Sequence[float], weights: Sequence[float]) -> float:
     """
     tangents = [math.tan((0.5 - min(chance, 0.9)) * math.pi) for chance in chances]
     return max(0.5 - math.atan(float(np.dot(weights, tangents))) / math.pi, 0.0)
-
-
-def _two_sided(z: float, dof: float) -> float:
-    """Return the chance that a Student t is at least so far from zero, by numerical integration."""
-    angle = math.atan(abs(z) / math.sqrt(dof))  # t = sqrt(dof) tan(angle): the density is cos^(dof - 1)
-    edges = np.linspace(angle, math.pi / 2.0, 2001)
-    whole = np.linspace(0.0, math.pi / 2.0, 2001)
-    tail, half = (_simpson(np.cos(x) ** (dof - 1.0), x) for x in (edges, whole))
-    return min(1.0, tail / half)
-
-
-def _simpson(values: Floats, x: Floats) -> float:
-    step = (x[-1] - x[0]) / (len(x) - 1)
-    return float(
-        step / 3.0 * (values[0] + values[-1] + 4.0 * values[1:-1:2].sum() + 2.0 * values[2:-1:2].sum())
-    )

@@ -47,9 +47,9 @@ def test_wheel_that_wears_by_one_per_cent_in_thirty_days_is_found() -> None:
         [("robot-0", "drift") in _alarms(random, 0.01, 0.0, sigma) for _ in range(80)]
         for sigma in (SIGMA, 0.003)
     )
-    assert np.mean(better) >= 0.95
-    # 1 % is four standard deviations of its own trend there: no test of both directions finds more than 0.89.
-    assert np.mean(daily) >= 0.77  # 0.85 expected, two standard deviations of 80 draws
+    # What logs may scatter for several logs on end, or in a season, is not known before: that costs 0.06.
+    assert np.mean(better) >= 0.91  # 0.96 expected, two standard deviations of 80 draws
+    assert np.mean(daily) >= 0.67  # 0.77 expected; no test of both directions finds more than 0.89
 
 
 @pytest.mark.slow
@@ -104,7 +104,7 @@ def test_scatter_that_vehicles_share_makes_the_trend_of_one_surer() -> None:
     expected = 30.0 * 2.5 * SIGMA / np.sqrt(10.0)
     assert np.std(shared) < 0.2 * expected
     assert abs(np.mean(shared) / expected - 1.0) < 0.3
-    assert found["robot-0"].size == pytest.approx(own.size)
+    assert found["robot-0"].size == pytest.approx(own.size, rel=0.1)  # other weights of its logs
 
 
 def test_pooled_value_of_equal_logs_is_their_mean() -> None:
