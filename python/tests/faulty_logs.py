@@ -185,6 +185,11 @@ def later(seconds: float) -> Callable[[Poses], Poses]:
     return lambda p: replace(p, t=p.t + seconds)
 
 
+def at_rate(rate: float) -> Callable[[Poses], Poses]:
+    """Let the time of the poses run at another rate."""
+    return lambda p: replace(p, t=p.t[:1] + rate * (p.t - p.t[:1]))
+
+
 def watchdog(run: Run) -> Run:
     """Send each command once in 1.3 s; the robot stops half a second after it."""
     if run.commands is None or len(run.commands) == 0 or len(run.poses) < 10:
@@ -250,6 +255,7 @@ FAULTS: dict[str, Fault] = {
     "left wheel dead": of_wheels(sides(lambda left, right, t: (0.0 * left, right)), "dead-wheel"),
     "right wheel dead": of_wheels(sides(lambda left, right, t: (left, 0.0 * right)), "dead-wheel"),
     "counter of 16 bits": of_wheels(sides(wrapping(16.4)), "wheel-spikes"),
+    "counter of an angle": of_wheels(sides(wrapping(2.0 * np.pi * RADIUS)), "wheel-spikes"),
     "spikes of 20 times": of_wheels(spiked, "wheel-spikes"),
     "watchdog": Fault(watchdog, ("command-timeout",), ("commands",)),
     "stopped": Fault(stopped, ("does-not-move",)),
@@ -263,6 +269,7 @@ FAULTS: dict[str, Fault] = {
     "odometry echoes the command": Fault(echoing, ("echoed-commands",), ("commands", "wheels")),
     "twist in the parent's frame": Fault(rotated_into_parent, ("parent-twist",), ("wheels",)),
     "two publishers": Fault(two_publishers, ("two-sources",), ("wheels",)),
+    "poses in simulated time": of_poses(at_rate(0.8), "clock-drift"),
     "poses 2 s late": of_poses(later(2.0), "clock-offset"),
     "poses 2 s early": of_poses(later(-2.0), "clock-offset"),
 }

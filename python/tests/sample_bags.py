@@ -31,6 +31,7 @@ class Bag:
 
     ros1: bool = False
     messages: list[tuple[int, str, str, Any]] = field(default_factory=list)
+    silent: dict[str, str] = field(default_factory=dict)  # types of topics without a message
 
     def __post_init__(self) -> None:
         self.store = get_typestore(Stores.ROS1_NOETIC if self.ros1 else Stores.ROS2_HUMBLE)
@@ -95,7 +96,10 @@ class Bag:
 
     def _fill(self, writer: Any, serialise: Callable[[Any, str], Any]) -> None:
         with writer:
-            connections: dict[str, Any] = {}
+            connections: dict[str, Any] = {
+                topic: writer.add_connection(topic, kind, typestore=self.store)
+                for topic, kind in self.silent.items()
+            }
             for stamp, topic, kind, message in self.messages:
                 if topic not in connections:
                     connections[topic] = writer.add_connection(topic, kind, typestore=self.store)

@@ -9,14 +9,15 @@ import numpy as np
 
 from slipwise.logs.attitude import levelled
 from slipwise.logs.findings.course_heading import as_positions, is_course
+from slipwise.logs.findings.encoders import WheelSpikes
 from slipwise.logs.findings.finding import Finding, RefusedLogError
 from slipwise.logs.findings.plausibility import Implausible, UnreachablePoses, agreement
 from slipwise.logs.findings.readings import NotInSeconds
-from slipwise.logs.findings.seen import OTHER, WORDS
+from slipwise.logs.findings.seen import OTHER, WORDS, WholeLog
 from slipwise.logs.findings.wheel_twists import DeadWheel
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import LeftOut, Log, Run, has_course
+from slipwise.logs.log import Floats, LeftOut, Log, Run, has_course
 from slipwise.logs.motion_windows import evidence_of, measured_rows, motion_windows
 from slipwise.logs.pose_jumps import find_jumps, without_jumps
 
@@ -43,8 +44,8 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
     agreed = {name: agreement(motion_windows(rows, name)) for name in ("command", "wheel")}
     for name, own in agreed.items():
         odd = Implausible.of(own, WORDS[name], agreed[OTHER[name]])
-        dead = DeadWheel.of(motion_windows(rows, "wheel")) if odd is not None and name == "wheel" else None
-        _refuse(dead or odd, where)
+        cause = _cause(log, rows) if odd is not None and name == "wheel" else None
+        _refuse(cause or odd, where)
     runs, found = _smoothed(log, unknown_after)
     if _heads_along_course(runs, unknown_after):
         log = as_positions(log)
@@ -67,6 +68,11 @@ def _heads_along_course(runs: tuple[Run, ...], unknown_after: float) -> bool:
         return False
     name = "wheel" if any(run.wheels is not None for run in runs) else "command"
     return is_course(motion_windows(evidence_of(runs, unknown_after).windows, name))
+
+
+def _cause(log: Log, rows: Floats) -> Finding | None:
+    """Find what is wrong with encoders, which makes units and columns of the wheels look wrong."""
+    return DeadWheel.of(motion_windows(rows, "wheel")) or WheelSpikes().look_at(WholeLog(log, "wheel"))
 
 
 def _check_forward(log: Log, where: str) -> None:

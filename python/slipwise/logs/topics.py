@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from slipwise.errors import LogError
 from slipwise.logs.findings.finding import Finding
-from slipwise.logs.findings.topics import OtherRobot
+from slipwise.logs.findings.topics import OtherRobot, SilentTopic
 from slipwise.logs.messages import (
     COMMAND_TYPES,
     IMU,
@@ -163,7 +163,23 @@ def weigh_topics(
             advice["wheel"] = other.sentence
         else:
             said.append(f"{name} is not used, since {why}")
+    said += _silent(topics, {_COMMAND: command, _WHEEL: wheel}, options)
     return replace(found, problem=problem, guessed=(*notes, *said))
+
+
+def _silent(topics: Sequence[Topic], chosen: Mapping[Role, RoleChoice], options: LogOptions) -> list[Finding]:
+    """Say which topics without a message would be an input that is missing."""
+    given = {_COMMAND: options.command_topic, _WHEEL: options.wheel_topic}
+    many = {_COMMAND: "commands", _WHEEL: "wheel speeds"}
+    return [
+        SilentTopic.of(topic.name, many[role])
+        for role, choice in chosen.items()
+        if choice.topic is None and choice.problem is None and given[role] != NONE
+        for topic in topics
+        if topic.count == 0
+        and topic.type in role.kinds
+        and score_of(topic.name, topic.type, role.names)[0] > 0
+    ]
 
 
 def _others_topics(live: Mapping[str, Topic], options: LogOptions) -> dict[str, str]:

@@ -23,7 +23,7 @@ from slipwise.logs.findings.headings import (
     UnlikelySpeed,
 )
 from slipwise.logs.findings.plausibility import ENOUGH, ENOUGH_TURN, Implausible, UnreachablePoses
-from slipwise.logs.findings.pose_streams import ClockOffset, FrozenPoses
+from slipwise.logs.findings.pose_streams import ClockDrift, ClockOffset, FrozenPoses
 from slipwise.logs.findings.readings import READINGS
 from slipwise.logs.findings.repeated_wheels import RepeatedWheels
 from slipwise.logs.findings.seen import Seen, WholeLog
@@ -66,6 +66,7 @@ WHOLE: tuple[Check, ...] = (
     EchoedCommands(),
     FrozenPoses(),
     ClockOffset(),
+    ClockDrift(),
     TwoSources(),
 )
 #: What a live node looks for in its last minutes; two sources it watches sample by sample.

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from slipwise.logs.findings.seen import WholeLog
 
 _FEWEST = 100  # samples, before a spike among them is told
-_USUAL = 0.98  # quantile of sizes that are no spikes
+_USUAL = 0.8  # quantile of sizes that are no spikes
 _FAR = 6.0  # times the usual size, and the neighbours'
 _LEAST = 0.02  # m/s or rad/s, below which speeds are those of a robot that stands
 _LEFT = "absurd-speed"  # kind of what a reader leaves out
@@ -24,8 +24,9 @@ class WheelSpikes(Check):
     """Single speeds of wheels that no robot can have."""
 
     kind, family, spoils = "wheel-spikes", "encoders", False
+    hidden_by = ()
     means = "a counter wraps (16 bits, pi, 2 pi) or is reset, or ticks jump: speeds far beyond all others"
-    shows = "single samples 6 times as fast as their neighbours and as 98 % of all"
+    shows = "single samples 6 times as fast as their neighbours and as four fifths of all"
     cure = "unwrap the counter in the driver; those 15 times as fast as all before are left out"
 
     def look_at(self, whole: WholeLog) -> Finding | None:

@@ -23,6 +23,12 @@ _ARM = 0.3  # m at which a turn counts as distance
 _FAR = 3.0  # s in which another clock is looked for
 _STEP = 0.1  # s
 _APART = {"wheel": (-0.6, 0.5), "command": (-1.5, 0.3)}  # s added to poses; drives answer commands late
+_BEGIN = 100.0  # s in which rates are compared
+_KNOWN = 40.0  # s of them in which inputs are known, at least
+_DRIFT = 0.02  # a rate so far from 1 is told by 100 s
+_RATES, _RATE = 0.4, 0.005  # rates are tried as far from 1, in such steps
+_NONE = np.zeros(1)
+_NAMES = {"wheel": "wheels", "command": "commands"}
 _FIT, _BETTER = 0.7, 0.15  # least agreement at another clock, and by how much it beats none
 
 
@@ -50,6 +56,48 @@ class FrozenPoses(Check):
         )
 
 
+class ClockDrift(Check):
+    """Poses whose time runs at another rate than that of the inputs."""
+
+    kind, family, spoils = "clock-drift", "clocks", False
+    means = "poses and inputs of a table run at other rates: simulated time at a part of real time, a drift"
+    shows = "over the first 100 s both agree at a rate other than 1, and at 1 they do not"
+    cure = "`use_sim_time` for every node; date both by one clock before the table is written"
+
+    def look_at(self, whole: WholeLog) -> Finding | None:
+        """Try rates of the poses' time about their first stamp, where both do not agree as they are."""
+        run = max(whole.log.runs, key=lambda each: len(each.poses), default=None)
+        inputs = None if run is None else _inputs(run, whole)
+        if run is None or inputs is None or len(run.poses) < 3:
+            return None
+        p = run.poses
+        begin = p.t < p.t[0] + _BEGIN
+        held = HeldSum.of(inputs, inputs.v, whole.unknown_after)
+        if float(held.known(p.t[:1], p.t[:1] + _BEGIN)[0]) < _KNOWN:
+            return None
+        heading = np.full(len(p), np.nan) if p.course else p.yaw
+
+        def fit(rate: float) -> float:
+            t = p.t[0] + (p.t[begin] - p.t[0]) / rate
+            motion = pose_motion(t, p.x[begin], p.y[begin], heading[begin])
+            return float(agreements([inputs], motion, _NONE, whole.unknown_after)[0])
+
+        none = fit(1.0)
+        if none > _FIT - _BETTER:
+            return None
+        rates = 1.0 + np.arange(-_RATES, _RATES + 0.5 * _RATE, _RATE)
+        fits = [fit(rate) for rate in rates.tolist()]
+        best = int(np.argmax(fits))
+        if abs(rates[best] - 1.0) < _DRIFT or fits[best] < max(_FIT, none + 2.0 * _BETTER):
+            return None
+        return self.found(
+            f"the poses' time runs at {rates[best]:.3g} of that of the {_NAMES[whole.input_name]}: so they "
+            f"agree ({fits[best]:.2f}), and at the same rate they do not ({none:.2f})",
+            "Where this is a simulation, set use_sim_time for every node; else date both by one clock.",
+            evidence=float(rates[best]),
+        )
+
+
 class ClockOffset(Check):
     """Poses whose motion fits that of the inputs far better at another time."""
 
@@ -74,7 +122,7 @@ class ClockOffset(Check):
         offset, (low, high) = float(offsets[best]), _APART[whole.input_name]
         if low <= offset <= high or fits[best] < _FIT or fits[best] < none + _BETTER:
             return None
-        name = {"wheel": "wheels", "command": "commands"}[whole.input_name]
+        name = _NAMES[whole.input_name]
         way = "earlier" if offset < 0.0 else "later"
         return self.found(
             f"poses and {name} agree best ({fits[best]:.2f}, now {none:.2f}) with poses {abs(offset):.1f} s "

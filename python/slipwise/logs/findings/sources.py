@@ -32,6 +32,7 @@ class TwoSources(Check):
     """Values of one topic that follow two courses in turn."""
 
     kind, family, spoils = "two-sources", "topics", False
+    hidden_by = ("wheel-spikes",)  # that come often look like a second source
     means = "two nodes publish on one topic: two robots, two localisers, a controller and a filter"
     shows = "values take turns between two courses, each followed five times as closely as the other is near"
     cure = "`ros2 topic info -v` names them: remap one"

@@ -25,6 +25,24 @@ class OtherRobot(Check):
         return cls.found(f"{topic} is not used, since {why}: else give {option} {topic}")
 
 
+class SilentTopic(Check):
+    """A topic that nobody publishes."""
+
+    kind, family, spoils = "silent-topic", "topics", False
+    means = "a topic of wheels or commands is in the bag without a message: nobody publishes it"
+    shows = "0 messages, and no other topic in its place"
+    cure = "start or remap its publisher (`ros2 topic info -v`); or name another topic"
+
+    @classmethod
+    def of(cls, topic: str, role: str) -> Finding:
+        """Say which topic, and what it would be."""
+        return cls.found(
+            f"{topic} has no messages, and no other topic has {role}: nobody publishes it",
+            f"ros2 topic info -v {topic} names its publishers: start or remap one, or name another topic.",
+            evidence=0.0,
+        )
+
+
 class ZeroTwist(Check):
     """An odometry whose twist stays zero."""
 
@@ -96,4 +114,11 @@ class ArmJoints(Check):
         )
 
 
-TOPICS: tuple[Check, ...] = (OtherRobot(), ZeroTwist(), NoRotation(), MissingFile(), ArmJoints())
+TOPICS: tuple[Check, ...] = (
+    OtherRobot(),
+    SilentTopic(),
+    ZeroTwist(),
+    NoRotation(),
+    MissingFile(),
+    ArmJoints(),
+)

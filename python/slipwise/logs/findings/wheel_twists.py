@@ -105,7 +105,7 @@ class Unrelated(Check):
     shows = "turns and speeds of poses and inputs correlate by less than 0.4"
     cure = "the topic or file of the other; `--pose-clock-offset auto` where clocks are apart"
     explained_by = ("does-not-move", "parent-twist", "dead-wheel", "lost-heading", "constant-heading")
-    hidden_by = ("two-sources", "clock-offset")
+    hidden_by = ("two-sources", "clock-offset", "clock-drift")
 
     def look(self, seen: Seen) -> Finding | None:
         """Correlate turns, and speeds about their mean."""
