@@ -13,7 +13,7 @@ from slipwise.logs.findings.encoders import WheelSpikes
 from slipwise.logs.findings.finding import Finding, RefusedLogError
 from slipwise.logs.findings.plausibility import Implausible, UnreachablePoses, agreement
 from slipwise.logs.findings.readings import NotInSeconds
-from slipwise.logs.findings.seen import OTHER, WORDS, WholeLog
+from slipwise.logs.findings.seen import OTHER, WORDS
 from slipwise.logs.findings.wheel_twists import DeadWheel
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
@@ -72,7 +72,7 @@ def _heads_along_course(runs: tuple[Run, ...], unknown_after: float) -> bool:
 
 def _cause(log: Log, rows: Floats) -> Finding | None:
     """Find what is wrong with encoders, which makes units and columns of the wheels look wrong."""
-    return DeadWheel.of(motion_windows(rows, "wheel")) or WheelSpikes().look_at(WholeLog(log, "wheel"))
+    return DeadWheel.of(motion_windows(rows, "wheel")) or WheelSpikes.kept(log)
 
 
 def _check_forward(log: Log, where: str) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.log import Run
+from slipwise.logs.log import Log, Run
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import WholeLog
@@ -17,6 +17,7 @@ _FEWEST = 100  # samples, before a spike among them is told
 _USUAL = 0.8  # quantile of sizes that are no spikes
 _FAR = 6.0  # times the usual size, and the neighbours'
 _LEAST = 0.02  # m/s or rad/s, below which speeds are those of a robot that stands
+_CURE = "Unwrap the counter (16 bits, pi, 2 pi) in the driver, or publish velocities."
 _LEFT = "absurd-speed"  # kind of what a reader leaves out
 
 
@@ -30,19 +31,30 @@ class WheelSpikes(Check):
     cure = "unwrap the counter in the driver; those 15 times as fast as all before are left out"
 
     def look_at(self, whole: WholeLog) -> Finding | None:
-        """Look at what was left out of the wheels."""
+        """Look at what was left out of the wheels, and at what was not."""
         left = [e for e in whole.log.left_out if e.kind == _LEFT and e.reason.startswith("wheels")]
-        kept = [spike for run in whole.log.runs for spike in _spikes(run)]
-        count = sum(each.count for each in left) + len(kept)
-        if not count:
-            return None
-        first = left[0].where if left else kept[0]
+        kept = self.kept(whole.log)
+        if not left:
+            return kept
+        count = sum(each.count for each in left)
         return self.found(
-            f"{count} wheel speeds jump far beyond all others for one sample (first at {first}): a "
+            f"{count} wheel speeds jump far beyond all others for one sample (first at {left[0].where}): a "
             "counter wraps or is reset",
-            "They are left out. " * (not kept)
-            + "Unwrap the counter (16 bits, pi, 2 pi) in the driver, or publish velocities.",
+            f"They are left out{', others are not' if kept else ''}. {_CURE}",
             evidence=count,
+        )
+
+    @classmethod
+    def kept(cls, log: Log) -> Finding | None:
+        """Look at what was not left out."""
+        spikes = [spike for run in log.runs for spike in _spikes(run)]
+        if not spikes:
+            return None
+        return cls.found(
+            f"{len(spikes)} wheel speeds jump far beyond all others for one sample (first at {spikes[0]}): a "
+            "counter wraps or is reset",
+            _CURE,
+            evidence=len(spikes),
         )
 
 

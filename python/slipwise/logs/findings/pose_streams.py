@@ -4,31 +4,27 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.findings.seen import WORDS, WholeLog
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Floats, Inputs, Poses, Run
 from slipwise.logs.pose_clock import agreements, pose_motion
-
-if TYPE_CHECKING:
-    from slipwise.logs.findings.seen import WholeLog
 
 _LONG = 3.0  # s, and as many usual steps,
 _STEPS = 20.0
 _DRIVEN = 0.5  # m by the inputs, or as much of a turn
 _ARM = 0.3  # m at which a turn counts as distance
 _FAR = 3.0  # s in which another clock is looked for
-_STEP = 0.1  # s
-_APART = {"wheel": (-0.6, 0.5), "command": (-1.5, 0.3)}  # s added to poses; drives answer commands late
+_OFFSETS = np.arange(-_FAR, _FAR + 0.05, 0.1)  # s
+_APART = {"wheel": (-0.6, 0.5), "command": (-1.8, 0.3)}  # s added to poses; drives answer commands late
 _BEGIN = 100.0  # s in which rates are compared
 _KNOWN = 40.0  # s of them in which inputs are known, at least
 _DRIFT = 0.02  # a rate so far from 1 is told by 100 s
 _RATES, _RATE = 0.4, 0.005  # rates are tried as far from 1, in such steps
 _NONE = np.zeros(1)
-_NAMES = {"wheel": "wheels", "command": "commands"}
 _FIT, _BETTER = 0.7, 0.15  # least agreement at another clock, and by how much it beats none
 
 
@@ -65,9 +61,10 @@ class ClockDrift(Check):
     cure = "`use_sim_time` for every node; date both by one clock before the table is written"
 
     def look_at(self, whole: WholeLog) -> Finding | None:
-        """Try rates of the poses' time about their first stamp, where both do not agree as they are."""
+        """Try rates of the poses' time about their first stamp, where no offset makes both agree."""
+        name = _told_by(whole)
         run = max(whole.log.runs, key=lambda each: len(each.poses), default=None)
-        inputs = None if run is None else _inputs(run, whole)
+        inputs = None if run is None else _inputs(run, name)
         if run is None or inputs is None or len(run.poses) < 3:
             return None
         p = run.poses
@@ -77,22 +74,22 @@ class ClockDrift(Check):
             return None
         heading = np.full(len(p), np.nan) if p.course else p.yaw
 
-        def fit(rate: float) -> float:
+        def fit(rate: float, offsets: Floats) -> float:
             t = p.t[0] + (p.t[begin] - p.t[0]) / rate
             motion = pose_motion(t, p.x[begin], p.y[begin], heading[begin])
-            return float(agreements([inputs], motion, _NONE, whole.unknown_after)[0])
+            return float(agreements([inputs], motion, offsets, whole.unknown_after).max())
 
-        none = fit(1.0)
+        none = fit(1.0, _OFFSETS)
         if none > _FIT - _BETTER:
             return None
         rates = 1.0 + np.arange(-_RATES, _RATES + 0.5 * _RATE, _RATE)
-        fits = [fit(rate) for rate in rates.tolist()]
+        fits = [fit(rate, _NONE) for rate in rates.tolist()]
         best = int(np.argmax(fits))
-        if abs(rates[best] - 1.0) < _DRIFT or fits[best] < max(_FIT, none + 2.0 * _BETTER):
+        if abs(rates[best] - 1.0) < _DRIFT or fits[best] < max(_FIT, none + _BETTER):
             return None
         return self.found(
-            f"the poses' time runs at {rates[best]:.3g} of that of the {_NAMES[whole.input_name]}: so they "
-            f"agree ({fits[best]:.2f}), and at the same rate they do not ({none:.2f})",
+            f"the poses' time runs at {rates[best]:.3g} of that of the {WORDS[name].name}: so they agree "
+            f"({fits[best]:.2f}), and at the same rate they do not ({none:.2f})",
             "Where this is a simulation, set use_sim_time for every node; else date both by one clock.",
             evidence=float(rates[best]),
         )
@@ -103,43 +100,51 @@ class ClockOffset(Check):
 
     kind, family, spoils = "clock-offset", "clocks", False
     means = "poses and inputs are on clocks that are apart, or one of them waits in a queue"
-    shows = "both agree best with poses 0.6 s earlier or 0.5 s later and more (commands: 1.5 s, 0.3 s)"
+    shows = "both agree best with poses 0.6 s earlier or 0.5 s later and more (commands: 1.8 s, 0.3 s)"
     cure = "`--pose-clock-offset auto`; stamp poses when they are measured"
 
     def look_at(self, whole: WholeLog) -> Finding | None:
         """Try offsets of 3 s either way."""
-        runs = [run for run in whole.log.runs if len(run.poses) > 1 and _inputs(run, whole) is not None]
+        name = _told_by(whole)
+        runs = [run for run in whole.log.runs if len(run.poses) > 1 and _inputs(run, name) is not None]
         poses = [run.poses for run in runs]
         if not poses or any(a.t[-1] >= b.t[0] for a, b in itertools.pairwise(poses)):
             return None
         heading = [np.full(len(p), np.nan) if p.course else p.yaw for p in poses]
         columns = (np.concatenate([getattr(p, name) for p in poses]) for name in ("t", "x", "y"))
         motion = pose_motion(*columns, np.concatenate(heading))  # type: ignore[call-arg]
-        offsets = np.arange(-_FAR, _FAR + 0.5 * _STEP, _STEP)
-        inputs = [series for run in runs if (series := _inputs(run, whole)) is not None]
-        fits = agreements(inputs, motion, offsets, whole.unknown_after)
-        best, none = int(np.argmax(fits)), float(fits[len(offsets) // 2])
-        offset, (low, high) = float(offsets[best]), _APART[whole.input_name]
+        inputs = [series for run in runs if (series := _inputs(run, name)) is not None]
+        fits = agreements(inputs, motion, _OFFSETS, whole.unknown_after)
+        best, none = int(np.argmax(fits)), float(fits[len(_OFFSETS) // 2])
+        offset, (low, high) = float(_OFFSETS[best]), _APART[name]
         if low <= offset <= high or fits[best] < _FIT or fits[best] < none + _BETTER:
             return None
-        name = _NAMES[whole.input_name]
+        late = ", or the drive answers so late" if name == "command" and offset < 0.0 else ""
         way = "earlier" if offset < 0.0 else "later"
         return self.found(
-            f"poses and {name} agree best ({fits[best]:.2f}, now {none:.2f}) with poses {abs(offset):.1f} s "
-            f"{way}: their clocks are apart, or one waits in a queue",
+            f"poses and {WORDS[name].name} agree best ({fits[best]:.2f}, now {none:.2f}) with poses "
+            f"{abs(offset):.1f} s {way}: their clocks are apart, or one waits in a queue{late}",
             "Give --pose-clock-offset auto, and stamp poses when they are measured.",
             evidence=offset,
         )
 
 
-def _inputs(run: Run, whole: WholeLog) -> Inputs | None:
-    inputs = run.commands if whole.input_name == "command" else run.wheels
+def _told_by(whole: WholeLog) -> str:
+    """Return which input tells of clocks: wheels, which no drive delays, where there are any."""
+    return "wheel" if any(run.wheels for run in whole.log.runs) else "command"
+
+
+def _inputs(run: Run, name: str) -> Inputs | None:
+    inputs = run.commands if name == "command" else run.wheels
     return inputs if inputs is not None and len(inputs) > 1 else None
 
 
 def _frozen(run: Run, whole: WholeLog) -> list[tuple[float, str]]:
     """Return seconds and place of each stretch of a run."""
-    inputs, poses = _inputs(run, whole), run.poses if run.poses.measured is None else run.poses.measured
+    inputs, poses = (
+        _inputs(run, whole.input_name),
+        run.poses if run.poses.measured is None else run.poses.measured,
+    )
     if inputs is None or len(poses) < 3:
         return []
     first, last = _stretches(poses)
