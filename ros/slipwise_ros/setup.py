@@ -13,6 +13,7 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
         (f"share/{NAME}/launch", ["launch/live.launch.xml"]),
+        (f"share/{NAME}/layouts", ["layouts/slipwise.json"]),
     ],
     install_requires=["setuptools"],
     zip_safe=True,

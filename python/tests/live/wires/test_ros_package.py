@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import signal
 import subprocess
 import sysconfig
@@ -23,6 +25,7 @@ from scripted_node import SLIP
 import slipwise as sw
 from slipwise.calibration import Settings
 from slipwise.live.cache import Cache, CacheKey
+from slipwise.live.ros_messages import TOPICS
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.models.model import parse_model
 
@@ -139,6 +142,21 @@ def beginning(lines: Path) -> Path:
     first = lines.with_name("first")
     first.write_text("\n".join(lines.read_text().splitlines()[:800]))
     return first
+
+
+def test_the_layout_shows_topics_and_fields_that_there_are() -> None:
+    layout = json.loads((ROOT / "ros/slipwise_ros/layouts/slipwise.json").read_text())
+    text = json.dumps(layout)
+    used = set(re.findall(r'"/slipwise/(\w+)((?:\.\w+)*)', text))
+    assert {topic for topic, _ in used} == {"predicted_path", "odometry", "slip_state", "motion_model"}
+    fields = ros_types().fielddefs
+    for topic, path in used:
+        kind = TOPICS[topic].type
+        for field in path.split(".")[1:]:
+            found = dict(fields[kind][1])[field]
+            kind = found[1] if isinstance(found[1], str) else ""
+    panels = set(re.findall(r'"((?:3D|Plot|RawMessages)!\w+)"', json.dumps(layout["layout"])))
+    assert panels == set(layout["configById"])
 
 
 def test_the_launch_file_gives_parameters_that_the_node_has() -> None:
