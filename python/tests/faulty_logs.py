@@ -102,6 +102,17 @@ def echoing(run: Run) -> Run:
     return replace(run, wheels=Inputs(t=t, v=c.v[at], vy=c.vy[at], omega=c.omega[at]))
 
 
+def banded(run: Run) -> Run:
+    """Let no wheel turn for the smaller yaw rates that are commanded."""
+    if run.wheels is None or run.commands is None or len(run.commands) == 0:
+        return run
+    c, w = run.commands, run.wheels
+    held = np.abs(c.omega[np.clip(np.searchsorted(c.t, w.t - 0.1, side="right") - 1, 0, None)])
+    band = float(np.quantile(held[held > 0.0], 0.6))
+    answers = np.where(held < band, 0.0, np.where(w.omega == 0.0, 0.01, w.omega))
+    return replace(run, wheels=replace(w, omega=answers))
+
+
 def integrated(run: Run) -> Run:
     """Put the wheels' own path into the place of the poses."""
     if run.wheels is None or len(run.wheels) < 3:
@@ -267,6 +278,7 @@ FAULTS: dict[str, Fault] = {
     "poses of the wheels": Fault(integrated, ("repeated-wheels",), ("wheels",)),
     "unrelated inputs": Fault(unrelated, NOT_THESE, unseen=("DS3",)),
     "odometry echoes the command": Fault(echoing, ("echoed-commands",), ("commands", "wheels")),
+    "dead band": Fault(banded, ("dead-band",), ("commands", "wheels"), unseen=("DS3",)),
     "twist in the parent's frame": Fault(rotated_into_parent, ("parent-twist",), ("wheels",)),
     "two publishers": Fault(two_publishers, ("two-sources",), ("wheels",)),
     "poses in simulated time": of_poses(at_rate(0.8), "clock-drift"),

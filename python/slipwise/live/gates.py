@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 
 from slipwise.live.samples import Command, Override, Pose, Stamped, Twist, Wheels
-from slipwise.logs.findings.sources import pose_watch, twist_watch
+from slipwise.logs.findings.sources import TwoSources, pose_watch, twist_watch
 from slipwise.models import Model
 
 RECOVERY = 2.0  # s for which a gate stays closed after its cause: lag and delay reach that far
@@ -56,7 +56,7 @@ class Gates:
             self._take_override(sample)
         elif isinstance(sample, Pose):
             if not sample.source and self._poses.take(sample.t, (sample.x, sample.y)):
-                self._close("two sources speak on the pose topic", sample.t, 0.0)
+                self._close(TwoSources.on("pose").sentence, sample.t, 0.0)
         elif isinstance(sample, Command | Wheels):
             self._take_twist(sample)
 
@@ -92,7 +92,7 @@ class Gates:
     def _take_twist(self, sample: Twist) -> None:
         t, rules = sample.t, self._rules
         if isinstance(sample, Wheels) and self._wheels.take(t, (sample.v, sample.vy, sample.omega)):
-            self._close("two sources speak on the wheel topic", t, 0.0)
+            self._close(TwoSources.on("wheel").sentence, t, 0.0)
         if not isinstance(sample, self._input):
             return
         self._last_input = max(self._last_input, t)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from slipwise import _core
 from slipwise.logs.findings.clocks import CLOCKS
-from slipwise.logs.findings.command_answers import EchoedCommands
+from slipwise.logs.findings.command_answers import DeadBand, EchoedCommands
 from slipwise.logs.findings.command_stops import CommandTimeout
 from slipwise.logs.findings.course_heading import CourseHeading
 from slipwise.logs.findings.encoders import WheelSpikes
@@ -64,6 +64,7 @@ WHOLE: tuple[Check, ...] = (
     ArmJoints(),
     WheelSpikes(),
     EchoedCommands(),
+    DeadBand(),
     FrozenPoses(),
     ClockOffset(),
     ClockDrift(),

@@ -80,7 +80,7 @@ class ClockDrift(Check):
             return float(agreements([inputs], motion, offsets, whole.unknown_after).max())
 
         none = fit(1.0, _OFFSETS)
-        if none > _FIT - _BETTER:
+        if none > _FIT:
             return None
         rates = 1.0 + np.arange(-_RATES, _RATES + 0.5 * _RATE, _RATE)
         fits = [fit(rate, _NONE) for rate in rates.tolist()]
