@@ -12,7 +12,7 @@ from slipwise.errors import SettingsError
 from slipwise.live.outputs import ModelText, Note
 from slipwise.live.ros_messages import TOPICS
 from slipwise.live.ros_samples import to_pose, to_wheels
-from slipwise.live.ros_transport import CueTopics, RosTransport
+from slipwise.live.ros_transport import CLOCK_TYPE, CueTopics, RosTransport
 from slipwise.live.samples import Pose, Sample, SurfaceCue, Unusable, Wheels
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.wire import WireTopic
@@ -65,9 +65,12 @@ class Wire:
         pass
 
 
-def transport_on(wire: Wire, terrain: str | None = None) -> RosTransport:
+def transport_on(
+    wire: Wire, terrain: str | None = None, *, name: str = "slipwise", simulated: bool | None = None
+) -> RosTransport:
     roles = Roles(command=None, wheel=CHOSEN, pose=CHOSEN, imu=None, guessed=(), advice={})
-    return RosTransport(wire, roles, LogOptions(), name="slipwise", cues=CueTopics(terrain=terrain))
+    cues = CueTopics(terrain=terrain)
+    return RosTransport(wire, roles, LogOptions(), name=name, cues=cues, simulated=simulated)
 
 
 def test_where_nobody_listens_only_what_comes_once_is_published() -> None:
@@ -169,3 +172,22 @@ def test_labels_come_on_two_topics_and_a_change_on_its_own() -> None:
         SurfaceCue(" "),  # no name, and no change: counted
         SurfaceCue(),
     ]
+
+
+@pytest.mark.parametrize(
+    ("simulated", "published", "heeds"),
+    [(None, True, True), (None, False, False), (True, False, True), (False, True, False)],
+)
+def test_the_clock_is_that_of_the_parameter_or_where_somebody_publishes_it(
+    simulated: bool | None, published: bool, heeds: bool
+) -> None:
+    wire = Wire()
+    wire.topics = lambda: [WireTopic("/clock", CLOCK_TYPE, 1)] if published else []  # type: ignore[method-assign]
+    transport_on(wire, simulated=simulated).subscribe(lambda _sample: None)
+    assert ("/clock" in wire.takers) == heeds
+
+
+def test_topics_of_a_node_in_a_namespace_are_below_it() -> None:
+    wire = Wire()
+    transport_on(wire, name="robot_1/slipwise").subscribe(lambda _sample: None)
+    assert {"/robot_1/slipwise/apply", "/robot_1/slipwise/predict"} <= set(wire.takers)

@@ -67,12 +67,14 @@ class Runner:
         self._wire: RclpyWire | None = None
         self._thread: threading.Thread | None = None
         self._stopping = threading.Event()
+        self._why = ""  # the run ended by a fault
 
     def start(self, *, forget: bool = False) -> None:
         """Begin; go on with what was learned, unless that is to be forgotten."""
         if forget:
             self._learning = None
         self._stopping.clear()
+        self._why = ""
         self._wire = RclpyWire(WireOptions(), self._ros)
         self._thread = threading.Thread(target=self._run, args=(self._wire, forget), name="slipwise-live")
         self._thread.start()
@@ -91,8 +93,8 @@ class Runner:
     def ask(self, kind: Kind, content: str = "") -> Answer:
         """Ask the learner, and wait for its answer."""
         live = self._live
-        if live is None:
-            return Answer(False, "the node is not active, or waits for the robot's topics")
+        if live is None or self._why:
+            return Answer(False, self._why or "the node waits for the robot's topics")
         answers: queue.SimpleQueue[Answer] = queue.SimpleQueue()
         live.ask(Request(kind, content, answers.put))
         with contextlib.suppress(queue.Empty):
@@ -107,11 +109,15 @@ class Runner:
                 live.run()
         except SlipwiseError as problem:
             if not self._stopping.is_set() or self._live is not None:
-                self._failed(str(problem))
+                self._fail(str(problem))
         except Exception as problem:
-            self._failed(f"{type(problem).__name__}: {problem}")
+            self._fail(f"{type(problem).__name__}: {problem}")
         finally:
             wire.close()
+
+    def _fail(self, why: str) -> None:
+        self._why = f"nothing is learned: {why}"
+        self._failed(self._why)
 
     def _built(self, wire: RclpyWire, *, forget: bool) -> LiveNode:
         ros, options = self._ros, self._options

@@ -64,7 +64,7 @@ class ModelListener {
   static constexpr int kAway = 25;  // looks without a publisher, after which it is gone
 
   void listen() {
-    for (int away = 0; !stopped_;) {
+    for (int away = 0; !stopped_ && rclcpp::ok();) {
       executor_.spin_once(kLook);
       away = subscription_->get_publisher_count() > 0 ? 0 : away + 1;
       if (away == kAway) {

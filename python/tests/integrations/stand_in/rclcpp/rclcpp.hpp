@@ -34,6 +34,8 @@ struct Other {
   }
 };
 
+inline bool ok() { return true; }
+
 class QoS {
  public:
   explicit QoS(int) {}
