@@ -26,6 +26,8 @@ SLIPWISE_TUNING(kShape, 2.0);                    // of the size, the part of sli
 SLIPWISE_TUNING(kForgetting, 0.05);              // for each jump, births in which all slip is forgotten
 SLIPWISE_TUNING(kForgetAfter, std::size_t{20});  // segments before the first of them
 SLIPWISE_TUNING(kMoves, 0.02);                   // of the reference speeds; slower robots are parked
+constexpr double kSure = 0.99;                   // of the weight; so much counts as another terrain at once
+constexpr double kAlmostAll = 1.0 - 1e-12;       // of the weight, whose odds are finite
 SLIPWISE_TUNING(kTempered, 0.5);                 // power of the number of segments that count as one
 
 /// The slip of one channel, by the size of its terms' jumps where the channel's most is 1.
@@ -152,6 +154,7 @@ void BranchBank::restart(const Estimate& known) {
   branches_.add({.estimate = known, .number = ++births_}, 1.0);
   led_by_ = known_ = births_;
   held_ = 0;
+  change_odds_ = 0.0;
   leader_changed_ = changed_ = false;
 }
 
@@ -223,7 +226,8 @@ void BranchBank::follow_leader() {
     young += branches_[i].number > known_ ? weights[static_cast<Eigen::Index>(i)] : 0.0;
   }
   held_ = young > 0.5 ? held_ + 1 : 0;
-  changed_ = held_ == kHeld;
+  change_odds_ = std::max(std::log(young) - std::log1p(-std::min(young, kAlmostAll)), 0.0);
+  changed_ = held_ == kHeld || young > kSure;
   if (changed_) {
     known_ = births_;
     held_ = 0;

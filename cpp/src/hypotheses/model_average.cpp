@@ -206,7 +206,9 @@ void ModelAverage::reweigh() {
   const std::vector<IekfUpdate>& updates = present(learning_).updates;
   update_ = updates[filters_.heaviest()];
   const BranchBank& branches = filters_[filters_.heaviest()].branches();
-  change_.alarm = change_.alarm || (branches.follow() && branches.changed());
+  if (branches.follow()) {
+    change_ = {.log_odds = branches.change_odds(), .alarm = branches.changed()};
+  }
   filters_.learn(common_log_scores(filters_.weights(), updates), settings_.weighting);
   if (undecided_ > 0) {
     --undecided_;

@@ -45,17 +45,20 @@ TEST_CASE("a jump of yaw slip is followed within ten segments, and counts as ano
     learn(plain, before);
     CHECK(branches.estimate().mean[kYaw] == doctest::Approx(-0.3).epsilon(0.05));
     const auto after = driven(model, jumped, 92, 10);
-    learn(branches, after);
     learn(plain, after);
+    int changes = 0;
+    for (const Segment& segment : after.segments) {
+      branches.learn(after.inputs, segment, kSpeeds);
+      changes += branches.branches().changed() ? 1 : 0;
+    }
     CHECK(std::abs(branches.estimate().mean[kYaw] - jumped) < 0.03);
     CHECK(std::abs(plain.estimate().mean[kYaw] - jumped) > 0.06);
-    bool changed = false;
-    const auto later = driven(model, jumped, 93, 15);
+    const auto later = driven(model, jumped, 93, 30);
     for (const Segment& segment : later.segments) {
       branches.learn(later.inputs, segment, kSpeeds);
-      changed = changed || branches.branches().changed();
+      changes += branches.branches().changed() ? 1 : 0;
     }
-    CHECK(changed);
+    CHECK(changes == 1);
   }
 }
 

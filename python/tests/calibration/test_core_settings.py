@@ -42,3 +42,11 @@ def test_bases_that_are_chosen_are_those_of_a_car_too(bases: list[str]) -> None:
     default = make_settings({"log": {"vehicle": "dart"}})
     fewer = core_settings(default, "command", HORIZONS, car=car_of(default)).hypotheses.bases
     assert 0 < len(fewer) < len(default.bases())
+
+
+def test_detector_looks_for_changes_where_surfaces_are_remembered_and_branches_elsewhere() -> None:
+    settings = Settings.model_validate({"change": {"branches": True}})
+    for remember in (False, True):
+        hypotheses = core_settings(settings, "wheel", (1.0,), remember=remember).hypotheses
+        assert hypotheses.filter.branches.follow is not remember
+        assert hypotheses.average.change.detect is remember

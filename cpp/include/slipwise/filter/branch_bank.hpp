@@ -55,8 +55,10 @@ class BranchBank {
   const Estimate& leader() const { return branches_[branches_.heaviest()].estimate; }
   /// Whether with the last segment another branch came to hold more than half of the weight.
   bool leader_changed() const { return leader_changed_; }
-  /// Whether with the last segment branches that were born since the last change, or the start, have held more than
-  /// half of the weight for so long that the terrain counts as changed.
+  /// Log odds that slip jumped since the last change, or the start; 0 where they speak against it.
+  double change_odds() const { return change_odds_; }
+  /// Whether with the last segment these odds came to be large, or have been even for so long, that the terrain counts
+  /// as changed.
   bool changed() const { return changed_; }
 
   /// Nothing but this is known.
@@ -78,7 +80,7 @@ class BranchBank {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.kinds_, self.settings_, self.branches_, self.births_, self.segments_, self.led_by_, self.known_);
-    a(self.held_, self.leader_changed_, self.changed_);
+    a(self.held_, self.change_odds_, self.leader_changed_, self.changed_);
   }
 
  private:
@@ -100,6 +102,7 @@ class BranchBank {
   std::size_t led_by_ = 0;    ///< number of the branch that held more than half of the weight last
   std::size_t known_ = 0;     ///< births until the terrain counted as changed
   std::size_t held_ = 0;      ///< segments for which branches that were born since have more than half of the weight
+  double change_odds_ = 0.0;
   bool leader_changed_ = false;
   bool changed_ = false;
 };
