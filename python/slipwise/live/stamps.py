@@ -22,6 +22,11 @@ def _nobody(_: str) -> None:
     """Has no listener."""
 
 
+def seconds_of(stamp: Any) -> float:
+    """Return a stamp [s], rounded as that of a bag is: a played bag teaches the bytes that it holds."""
+    return float(int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)) / 1e9
+
+
 class Stamps:
     """Dates messages [s], as those of a bag are dated.
 
@@ -40,7 +45,7 @@ class Stamps:
 
     def take_clock(self, clock: Any) -> None:
         """Take the time that /clock has."""
-        self._now = clock.sec + clock.nanosec / 1e9
+        self._now = seconds_of(clock)
 
     def of(self, message: Any, arrived: float, topic: str = "") -> float:
         """Return the stamp of a message of a topic that arrived at a time [s since 1970].
@@ -50,7 +55,7 @@ class Stamps:
         """
         header = getattr(message, "header", None)
         if header is not None and (header.stamp.sec or header.stamp.nanosec):
-            t = float(header.stamp.sec + header.stamp.nanosec / 1e9)
+            t = seconds_of(header.stamp)
             self._clocks.setdefault(topic, _Lead()).take(t - arrived)
             return t + self._shift(topic)
         if self.simulated:

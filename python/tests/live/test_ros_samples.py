@@ -12,7 +12,7 @@ import pytest
 from slipwise.errors import SettingsError
 from slipwise.live.ros_samples import FixPoses, to_command, to_pose, to_wheels
 from slipwise.live.samples import Command, Pose, Wheels
-from slipwise.live.stamps import Stamps
+from slipwise.live.stamps import Stamps, seconds_of
 from slipwise.logs.messages import ACKERMANN, JOINT_STATE, ODOMETRY, POSE_STAMPED, TWIST, TWIST_STAMPED
 from slipwise.logs.options import LogOptions
 
@@ -193,3 +193,12 @@ def test_simulated_time_at_another_rate_is_followed_live(rate: float) -> None:
             assert stamps.of(no_header, arrived, "/cmd_vel") == pytest.approx(
                 seconds, abs=0.31 * max(rate, 1.0)
             )
+
+
+def test_stamps_are_rounded_as_those_of_a_bag() -> None:
+    rng = np.random.default_rng(1)
+    stamps = [*rng.integers(0, 2**31 * 10**9, 500).tolist(), *rng.integers(0, 300 * 10**9, 500).tolist()]
+    of_bag = (np.array(stamps, dtype=np.int64) / 1e9).tolist()
+    halves = [divmod(stamp, 10**9) for stamp in stamps]
+    assert [seconds_of(Made(sec=s, nanosec=ns)) for s, ns in halves] == of_bag
+    assert [s + ns / 1e9 for s, ns in halves] != of_bag  # the simpler sum is rounded otherwise
