@@ -117,6 +117,7 @@ DESTROYING = (
     "excite --area 8x8 --vehicle husky --model m.yaml --json m.yaml",
     "fleet drive.csv --settings s.toml --json s.toml",
     "inspect drive.csv --json drive.csv",
+    "doctor drive.csv --json drive.csv",
     "inspect drive.csv --settings s.toml --json s.toml",
     "inspect drive.csv --excite drive.csv",
     "convert drive.csv -o drive.csv",
