@@ -21,6 +21,7 @@ Slipwise = Callable[..., Result]
 
 #: Paths that commands take: what they read, and what they write. `runs` is a folder that gets new folders.
 READ = {
+    "merge",
     "classifier",
     "logs",
     "replay",
