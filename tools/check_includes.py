@@ -18,6 +18,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("lie", "linear"),
     ("vehicle", "slip", "actuator", "terrain"),
     ("motion",),
+    ("sensor",),
     ("segment", "rollout"),
     ("filter", "planning"),
     ("disturbance", "identify", "dynamics"),

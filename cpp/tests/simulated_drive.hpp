@@ -81,7 +81,7 @@ inline SimulatedDrive simulate_drive(const MotionModel& model, const Eigen::Vect
     const SegmentPath path = integrate_segment(model, truth, drive.inputs, segment);
     pose = compose(pose, disturbed_motion(path, settings.noise, random));
     const Pose2 seen_at_end = measured_pose(pose, settings.noise, random);
-    segment.measured = between(observed, seen_at_end);
+    segment.measured = slipwise::measured_pose(between(observed, seen_at_end));
     drive.segments.push_back(segment);
     observed = settings.shared_poses ? seen_at_end : measured_pose(pose, settings.noise, random);
   }
@@ -92,7 +92,7 @@ inline SimulatedDrive simulate_drive(const MotionModel& model, const Eigen::Vect
 inline Eigen::Matrix3d window_noise(const MotionModel& model, const Eigen::VectorXd& mean, const InputHistory& inputs,
                                     const Segment& segment, const MotionNoise& noise) {
   return slip_covariance(integrate_segment(model, mean, inputs, segment), noise) +
-         pose_noise_covariance(segment.measured, noise);
+         pose_noise_covariance(Pose2::from_vector(rows_of(segment.measured)), noise);
 }
 
 }  // namespace slipwise::tests

@@ -125,8 +125,9 @@ void bind_results(nb::module_& m) {
       .value("NotConverged", Status::NotConverged);
   nb::class_<IekfUpdate>(m, "IekfUpdate", "One segment's update.")
       .def_ro("estimate", &IekfUpdate::estimate)
-      .def_ro("innovation", &IekfUpdate::innovation)
-      .def_ro("innovation_covariance", &IekfUpdate::innovation_covariance)
+      .def_prop_ro("innovation", [](const IekfUpdate& u) -> Eigen::VectorXd { return u.innovation; })
+      .def_prop_ro("innovation_covariance",
+                   [](const IekfUpdate& u) -> Eigen::MatrixXd { return u.innovation_covariance; })
       .def_ro("nis", &IekfUpdate::nis)
       .def_ro("weight", &IekfUpdate::weight)
       .def_ro("status", &IekfUpdate::status);
@@ -143,10 +144,13 @@ void bind_results(nb::module_& m) {
 void bind_estimate(nb::module_& m) {
   bind_settings(m);
   bind_results(m);
-  m.def("iekf_update",
-        nb::overload_cast<const MotionModel&, const Estimate&, const InputHistory&, const Segment&,
-                          const Eigen::Matrix3d&, const IekfSettings&>(&iekf_update),
-        "model"_a, "prior"_a, "inputs"_a, "segment"_a, "noise"_a, "settings"_a);
+  m.def(
+      "iekf_update",
+      [](const MotionModel& model, const Estimate& prior, const InputHistory& inputs, const Segment& segment,
+         const Eigen::Matrix3d& noise, const IekfSettings& settings) {
+        return iekf_update(model, prior, inputs, segment, RowsCovariance(noise), settings);
+      },
+      "model"_a, "prior"_a, "inputs"_a, "segment"_a, "noise"_a, "settings"_a);
   m.def(
       "prior_estimate",
       [](const MotionModel& model, double v, double omega, const PriorSettings& settings) {
@@ -165,7 +169,7 @@ void bind_estimate(nb::module_& m) {
       [](const SegmentLinearization& at, const Eigen::MatrixXd& parameters, const MotionNoise& shape,
          const Eigen::Vector3d& scale) {
         check_square(parameters, at.by_parameter.cols(), "the covariance of a prediction's parameters");
-        return prediction_covariance(at, parameters, shape, scale);
+        return Eigen::MatrixXd(prediction_covariance(at, parameters, shape, scale));
       },
       "at"_a, "parameters"_a, "shape"_a, "scale"_a, "Covariance of a predicted chart (x, y, theta), [3, 3].");
   nb::class_<CorrelatedPair>(m, "CorrelatedPair", "Two parameters whose errors go together.")
@@ -223,11 +227,15 @@ void bind_smoother(nb::module_& m) {
   m.def(
       "rts_smooth",
       [](const MotionModel& model, const Estimate& prior, const std::vector<const InputHistory*>& inputs,
-         const std::vector<Segment>& segments, const std::vector<Eigen::Matrix3d>& noise, const DriftSettings& drift,
+         const std::vector<Segment>& segments, const std::vector<Eigen::MatrixXd>& noise, const DriftSettings& drift,
          const IekfSettings& iekf) {
         check_inputs(inputs, segments.size(), noise.size());
         std::vector<BatchDatum> data;
         for (std::size_t i = 0; i < segments.size(); ++i) {
+          const Eigen::Index rows = rows_of(segments[i].measured).size();
+          if (noise[i].rows() != rows || noise[i].cols() != rows) {
+            throw std::invalid_argument("the noise of a segment must have a row for each number measured of it");
+          }
           data.push_back({*inputs[i], segments[i], noise[i]});
         }
         return rts_smooth(model, prior, data, drift, iekf);
@@ -274,8 +282,8 @@ void bind_slip_disturbance(nb::module_& m) {
       .def_ro("basis_weights", &MotionPosterior::basis_weights)
       .def_prop_ro("structure", [](const MotionPosterior& posterior) { return static_cast<int>(posterior.structure); });
   nb::class_<ExpectedPose>(m, "ExpectedPose", "Where a segment is expected to end.")
-      .def_ro("pose", &ExpectedPose::pose)
-      .def_ro("covariance", &ExpectedPose::covariance);
+      .def_prop_ro("pose", [](const ExpectedPose& e) -> Eigen::VectorXd { return e.pose; })
+      .def_prop_ro("covariance", [](const ExpectedPose& e) -> Eigen::MatrixXd { return e.covariance; });
   nb::class_<SlipNow>(m, "SlipNow", "Where slip is at some moment, under each guess of how it disturbed.");
   nb::class_<DisturbanceFilter>(m, "DisturbanceFilter", "The slip disturbance about what was learned.")
       .def(nb::init<const DisturbanceSettings&>(), "settings"_a)

@@ -13,7 +13,7 @@
 #include "slipwise/segment/ground.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
-#include "slipwise/segment/sensor_motion.hpp"
+#include "slipwise/sensor/sensor_motion.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -68,8 +68,12 @@ void bind_segment(nb::module_& m) {
           "__init__",
           [](Segment* self, double start, double end, const Pose2& measured, std::optional<BodyTwist> initial,
              double gx, double gy) {
-            new (self)
-                Segment{.start = start, .end = end, .measured = measured, .initial = initial, .gx = gx, .gy = gy};
+            new (self) Segment{.start = start,
+                               .end = end,
+                               .measured = measured_pose(measured),
+                               .initial = initial,
+                               .gx = gx,
+                               .gy = gy};
           },
           "start"_a, "end"_a, "measured"_a, "initial"_a.none(), "gx"_a, "gy"_a)
       .def(
@@ -88,7 +92,9 @@ void bind_segment(nb::module_& m) {
           "with_sensor",
           [](const Segment& segment, const Pose2& sensor) {
             Segment observed = segment;
-            observed.sensor = sensor;
+            for (Measured& each : observed.measured) {
+              each.sensor.place = sensor;
+            }
             return observed;
           },
           "sensor"_a, "The same segment, measured by a sensor at this pose in base_link.")
@@ -119,7 +125,9 @@ void bind_segment(nb::module_& m) {
       .def_ro("ground", &Segment::ground)
       .def_ro("start", &Segment::start)
       .def_ro("end", &Segment::end)
-      .def_ro("measured", &Segment::measured)
+      .def_prop_ro(
+          "measured",
+          [](const Segment& s) { return Pose2::from_vector(chart_of(directions_of(s.measured), rows_of(s.measured))); })
       .def_ro("heading", &Segment::heading)
       .def_ro("gx", &Segment::gx)
       .def_ro("gy", &Segment::gy)
@@ -139,7 +147,7 @@ void bind_segment(nb::module_& m) {
           [](const SegmentPath& p) {
             std::vector<Pose2> observed;
             for (const Pose2& pose : p.poses) {
-              observed.push_back(sensor_motion(pose, p.sensor));
+              observed.push_back(sensor_motion(pose, p.sensor()));
             }
             return pose_matrix(observed);
           },
@@ -149,8 +157,8 @@ void bind_segment(nb::module_& m) {
   nb::class_<SegmentLinearization>(m, "SegmentLinearization",
                                    "A path, and where it leads the pose sensor, with the derivative.")
       .def_ro("path", &SegmentLinearization::path)
-      .def_ro("predicted", &SegmentLinearization::predicted)
-      .def_ro("by_parameter", &SegmentLinearization::by_parameter);
+      .def_prop_ro("predicted", &SegmentLinearization::pose)
+      .def_prop_ro("by_parameter", [](const SegmentLinearization& at) -> Eigen::MatrixXd { return at.by_parameter; });
   m.attr("TURN_RADIUS") = kTurnRadius;
   m.attr("STRAIGHT_RADIUS") = kStraightRadius;
   nb::class_<MotionNoise>(m, "MotionNoise", "Noise of slip rates and poses.")
@@ -177,7 +185,16 @@ void bind_segment(nb::module_& m) {
       [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputHistory& inputs,
          const Segment& segment) { return linearize_segment(model, parameters, inputs, segment); },
       "model"_a, "parameters"_a, "inputs"_a, "segment"_a);
-  m.def("slip_covariance", &slip_covariance, "path"_a, "noise"_a);
+  m.def(
+      "slip_covariance",
+      [](const SegmentPath& path, const MotionNoise& noise) -> Eigen::MatrixXd { return slip_covariance(path, noise); },
+      "path"_a, "noise"_a);
+  m.def(
+      "segment_noise",
+      [](const SegmentPath& path, const Segment& segment, const MotionNoise& noise, const Eigen::Vector3d& scale)
+          -> Eigen::MatrixXd { return segment_noise(path, rows_of(segment.measured), noise, scale); },
+      "path"_a, "segment"_a, "noise"_a, "scale"_a,
+      "Covariance of what was measured of a segment that takes this path: slip and the sensors' own noise.");
   m.def(
       "pose_noise_covariance",
       [](const Pose2& measured, const MotionNoise& noise) { return pose_noise_covariance(measured, noise); },

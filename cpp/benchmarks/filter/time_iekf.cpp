@@ -55,7 +55,7 @@ Segment measured_segment(const MotionModel& model, const InputHistory& inputs, d
   Segment segment{.start = start, .end = start + length};
   Eigen::VectorXd truth = prior_of(model).mean;
   truth.head(model.slip_size()).setConstant(0.05);
-  segment.measured = integrate_segment(model, truth, inputs, segment).poses.back();
+  segment.measured = measured_pose(integrate_segment(model, truth, inputs, segment).poses.back());
   return segment;
 }
 
@@ -65,7 +65,7 @@ double calibrate(const MotionModel& model, const InputHistory& inputs, const std
   Estimate estimate = prior_of(model);
   for (const Segment& segment : segments) {
     const SegmentPath path = integrate_segment(model, estimate.mean, inputs, segment);
-    const Eigen::Matrix3d r = slip_covariance(path, noise) + pose_noise_covariance(segment.measured, noise);
+    const Eigen::Matrix3d r = slip_covariance(path, noise) + pose_noise_covariance(motion_of(segment.measured), noise);
     estimate = iekf_update(model, estimate, inputs, segment, r).estimate;
   }
   return estimate.mean[0];
@@ -83,7 +83,7 @@ void report(const char* name, const ActuatorParameters& learned) {
                 sink += integrate_segment(model, prior.mean, inputs, window).poses.back().x;
               }));
   std::printf("  linearise, 100 steps        %9.2f us\n", median_microseconds(2001, [&] {
-                sink += linearize_segment(model, prior.mean, inputs, window).predicted.x;
+                sink += linearize_segment(model, prior.mean, inputs, window).predicted[0];
               }));
   for (const auto& [words, settings] : {std::pair{"2 iterations", IekfSettings{.iterations = 2, .tolerance = 0.0}},
                                         std::pair{"as by default", IekfSettings{}}}) {

@@ -10,16 +10,14 @@ namespace {
 
 constexpr double kStep = 1e-5;  // of parameters, and of standard deviations of the slip ahead
 
-Eigen::Vector3d end_of(const MotionModel& model, const Eigen::VectorXd& parameters, const DrivenSegment& driven,
-                       const SlipAhead& ahead) {
-  return integrate_segment(model, parameters, driven.inputs, driven.segment, Integrator::Exact, ahead)
-      .sensor_motion()
-      .vector();
+Rows end_of(const MotionModel& model, const Eigen::VectorXd& parameters, const DrivenSegment& driven,
+            const SlipAhead& ahead) {
+  return integrate_segment(model, parameters, driven.inputs, driven.segment, Integrator::Exact, ahead).rows();
 }
 
 /// The end where the slip of all stretches has moved along a direction [slip, stretches].
-Eigen::Vector3d end_along(const MotionModel& model, Eigen::VectorXd parameters, const DrivenSegment& driven,
-                          SlipAhead ahead, const Eigen::MatrixXd& direction) {
+Rows end_along(const MotionModel& model, Eigen::VectorXd parameters, const DrivenSegment& driven, SlipAhead ahead,
+               const Eigen::MatrixXd& direction) {
   move_slip(direction, parameters, ahead);
   return end_of(model, parameters, driven, ahead);
 }
@@ -31,8 +29,9 @@ SegmentLinearization linearize_ahead(const MotionModel& model, const Eigen::Ref<
   SegmentLinearization found{
       .path = integrate_segment(model, parameters, driven.inputs, driven.segment, Integrator::Exact, ahead),
       .predicted = {},
-      .by_parameter = Eigen::Matrix<double, 3, Eigen::Dynamic>(3, parameters.size())};
-  found.predicted = found.path.sensor_motion();
+      .by_parameter = {}};
+  found.predicted = found.path.rows();
+  found.by_parameter.resize(found.predicted.size(), parameters.size());
   for (Eigen::Index i = 0; i < parameters.size(); ++i) {
     const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(parameters.size(), i);
     found.by_parameter.col(i) =
@@ -56,9 +55,9 @@ ExpectedPose predict_ahead(const DisturbanceFilter& filter, MotionPosterior post
   const SegmentLinearization at = linearize_ahead(posterior.model, mean, driven, mixed.ahead);
   ExpectedPose expected = filter.predict_at(posterior, now, at, driven.segment);
   for (const Eigen::MatrixXd& direction : mixed.directions) {
-    const Eigen::Vector3d by = (end_along(posterior.model, mean, driven, mixed.ahead, kStep * direction) -
-                                end_along(posterior.model, mean, driven, mixed.ahead, -kStep * direction)) /
-                               (2.0 * kStep);
+    const Rows by = (end_along(posterior.model, mean, driven, mixed.ahead, kStep * direction) -
+                     end_along(posterior.model, mean, driven, mixed.ahead, -kStep * direction)) /
+                    (2.0 * kStep);
     expected.covariance += by * by.transpose();
   }
   return expected;

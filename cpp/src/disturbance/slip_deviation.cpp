@@ -25,8 +25,8 @@ SlipDeviation::SlipDeviation(const SlipDisturbance& disturbance, const Disturbed
 void SlipDeviation::follow(const ObservedSlip& observed) {
   decay_to((observed.start + observed.end) / 2.0);
   const ObservedSlip::ByDeviation& h = observed.by_deviation;
-  const Eigen::Vector3d innovation = observed.innovation - h * mean_;
-  const Eigen::Matrix3d expected = h * covariance_ * h.transpose() + observed.noise;
+  const Rows innovation = observed.innovation - h * mean_;
+  const RowsCovariance expected = h * covariance_ * h.transpose() + observed.noise;
   const double larger = std::max(1.0, normalised_square(innovation, expected) / kGate) - 1.0;
   mean_ +=
       linear_update(covariance_, h, observed.noise + larger * expected) * innovation;  // an outlier moves it no further

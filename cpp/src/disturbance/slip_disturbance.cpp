@@ -19,7 +19,7 @@ namespace {
 ObservedSlip observed(const MotionPosterior& posterior, const DisturbedTerms& terms, const DrivenSegment& driven) {
   const auto& [inputs, segment, known_at] = driven;
   const auto at = linearize_slip(posterior.model, posterior.estimate.mean, inputs, segment);
-  return {segment.start, segment.end, chart_error(segment.measured.vector(), at.predicted.vector()),
+  return {segment.start, segment.end, shorter_error_of(segment, at),
           segment_noise(at.path, at.predicted, posterior.noise, posterior.noise_scale),
           at.by_parameter(Eigen::all, terms.places)};
 }
@@ -93,7 +93,7 @@ void DisturbanceFilter::learn(const MotionPosterior& posterior, const SlipNow& n
   Eigen::VectorXd scores(bank_.weights().size());
   for (std::size_t i = 0; i < bank_.size(); ++i) {
     const auto deviation = now.of_candidates[i].mean_over(next.start, next.end).first;
-    const Eigen::Vector3d innovation = next.innovation - next.by_deviation * deviation;
+    const Rows innovation = next.innovation - next.by_deviation * deviation;
     const double nis = normalised_square(innovation, next.noise);
     scores[static_cast<Eigen::Index>(i)] = student_log_score(nis, next.noise);  // judged by errors, as bases are
   }
@@ -190,18 +190,18 @@ ExpectedPose DisturbanceFilter::expected(const MotionPosterior& posterior, const
                                          const std::array<double, 2>& span) const {
   const auto [start, end] = span;
   const ObservedSlip::ByDeviation h = at.by_parameter(Eigen::all, terms.places);
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+  Rows mean = Rows::Zero(h.rows());
+  RowsCovariance square = RowsCovariance::Zero(h.rows(), h.rows());
   for (std::size_t i = 0; i < now.of_candidates.size(); ++i) {
     const auto [deviation, covariance] = now.of_candidates[i].mean_over(start, end);
-    const Eigen::Vector3d shift = h * deviation;
+    const Rows shift = h * deviation;
     const double weight = bank_.weights()[static_cast<Eigen::Index>(i)];
     mean += weight * shift;
     square += weight * (h * covariance * h.transpose() + shift * shift.transpose());
   }
-  const Eigen::Matrix3d without =
+  const RowsCovariance without =
       prediction_covariance(at, posterior.estimate.covariance, posterior.noise, posterior.noise_scale);
-  return {at.predicted.vector() + mean, without + square - mean * mean.transpose()};
+  return {at.predicted + mean, without + square - mean * mean.transpose()};
 }
 
 }  // namespace slipwise

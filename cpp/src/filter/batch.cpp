@@ -17,8 +17,6 @@
 namespace slipwise {
 namespace {
 
-using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-
 struct HuberLoss {
   double cost;
   double weight;
@@ -37,11 +35,13 @@ std::vector<NewError> new_errors(std::span<const BatchDatum> data) {
   std::vector<NewError> errors;
   errors.reserve(data.size());
   for (const BatchDatum& datum : data) {
-    Eigen::Matrix3d by_before = Eigen::Matrix3d::Zero();
-    if (!errors.empty()) {
+    RowsCovariance by_before;
+    RowsCovariance noise = datum.noise;
+    if (!errors.empty() && datum.shared.size() > 0) {
       by_before = errors.back().noise.solve(datum.shared.transpose()).transpose();
+      noise -= by_before * datum.shared.transpose();
     }
-    errors.push_back({by_before, (datum.noise - by_before * datum.shared.transpose()).llt()});
+    errors.push_back({std::move(by_before), noise.llt()});
   }
   return errors;
 }
@@ -65,16 +65,25 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
   }
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Segment& segment = data[i].segment;
-    if (!(segment.end > segment.start) || !segment.measured.vector().allFinite() ||
-        !Cholesky(data[i].noise).positive_definite()) {
+    if (!(segment.end > segment.start) || !rows_of(segment.measured).allFinite() ||
+        data[i].noise.rows() != rows_of(segment.measured).size() || !Cholesky(data[i].noise).positive_definite()) {
       throw std::invalid_argument("segment " + std::to_string(i) +
                                   " must end after it starts, and have finite measurements and a positive "
                                   "definite noise covariance");
     }
   }
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const RowsCovariance& shared = data[i].shared;
+    const bool fits = i > 0 && shared.rows() == data[i].noise.rows() && shared.cols() == data[i - 1].noise.rows();
+    if (shared.size() > 0 && i > 0 && !fits) {
+      throw std::invalid_argument("segment " + std::to_string(i) +
+                                  " shares noise of other rows than it and the one before have");
+    }
+  }
   const std::vector<NewError> errors = new_errors(data);
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!data[i].shared.allFinite() || errors[i].noise.info() != Eigen::Success) {
+    const RowsCovariance& shared = data[i].shared;
+    if (!shared.allFinite() || errors[i].noise.info() != Eigen::Success) {
       throw std::invalid_argument("segment " + std::to_string(i) +
                                   " shares more noise with the one before than both have: their covariance must be "
                                   "finite and positive definite");
@@ -83,8 +92,6 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
 }
 
 }  // namespace
-
-Eigen::Matrix3d nothing_shared() { return Eigen::Matrix3d::Zero(); }
 
 BatchSearch::BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDatum> data, const BatchSettings& settings,
                          std::vector<SegmentLinearization> at_start)
@@ -115,15 +122,17 @@ BatchPoint BatchSearch::point(std::vector<SegmentLinearization> data_at) const {
   const Eigen::VectorXd back = prior_.mean - search_.candidate();
   BatchPoint point{
       {prior_information_, prior_information_ * back}, back.dot(prior_information_ * back), std::move(data_at)};
-  Eigen::Vector3d r = Eigen::Vector3d::Zero();
-  Jacobian by_parameter = Jacobian::Zero(3, model_.size());
+  Rows r;
+  RowsJacobian by_parameter;
   for (std::size_t i = 0; i < data_.size(); ++i) {
     const SegmentLinearization& at = point.at[i];
-    r = data_[i].segment.measured.vector() - at.predicted.vector() - errors_[i].by_before * r;
-    by_parameter = at.by_parameter - errors_[i].by_before * by_parameter;
-    const Eigen::LLT<Eigen::Matrix3d>& noise = errors_[i].noise;
+    const RowsCovariance& by_before = errors_[i].by_before;
+    const bool shared = by_before.size() > 0;
+    r = shared ? Rows(error_of(data_[i].segment, at) - by_before * r) : error_of(data_[i].segment, at);
+    by_parameter = shared ? RowsJacobian(at.by_parameter - by_before * by_parameter) : at.by_parameter;
+    const Eigen::LLT<RowsCovariance>& noise = errors_[i].noise;
     const HuberLoss loss = huber_loss(r.dot(noise.solve(r)), huber_);
-    const Jacobian weighted = noise.solve(by_parameter) * loss.weight;
+    const RowsJacobian weighted = noise.solve(by_parameter) * loss.weight;
     point.cost += loss.cost;
     point.equations.information.noalias() += by_parameter.transpose() * weighted;
     point.equations.gradient.noalias() += weighted.transpose() * r;

@@ -94,22 +94,21 @@ Estimate forgotten(const Estimate& known, const Estimate& prior, Eigen::Index sl
 }
 
 /// What was measured, and its noise.
-struct MeasuredChart {
-  Eigen::Vector3d value;
-  const Eigen::Matrix3d& noise;
+struct MeasuredRows {
+  Rows value;
+  const RowsCovariance& noise;
 };
 
 /// One branch, by the linearisation that all share; a residual counts as by the rule of the IEKF.
-void update_branch(const MotionModel& model, Estimate& known, const IekfUpdate& shared, const MeasuredChart& measured,
+void update_branch(const MotionModel& model, Estimate& known, const IekfUpdate& shared, const MeasuredRows& measured,
                    const IekfSettings& settings) {
   const auto& by_parameter = shared.at.by_parameter;
-  const Eigen::Vector3d left =
-      measured.value - shared.at.predicted.vector() - by_parameter * (known.mean - shared.estimate.mean);
+  const Rows left = measured.value - shared.at.predicted - by_parameter * (known.mean - shared.estimate.mean);
   const double nis = normalised_square(left, innovation_covariance(known.covariance, by_parameter, measured.noise));
   if (!(nis <= settings.gate)) {
     return;
   }
-  const Eigen::Matrix3d weighted = measured.noise * std::max(std::sqrt(nis) / settings.huber, 1.0);
+  const RowsCovariance weighted = measured.noise * std::max(std::sqrt(nis) / settings.huber, 1.0);
   const Estimate before = known;
   known.mean += linear_update(known.covariance, by_parameter, weighted) * left;
   if (!shared.bent.isZero(0.0)) {
@@ -120,8 +119,7 @@ void update_branch(const MotionModel& model, Estimate& known, const IekfUpdate& 
 }
 
 SegmentLinearization moved(SegmentLinearization at, const Eigen::VectorXd& step) {
-  const Eigen::Vector3d by = at.by_parameter * step;
-  at.predicted = {at.predicted.x + by.x(), at.predicted.y + by.y(), at.predicted.theta + by.z()};
+  at.predicted += at.by_parameter * step;
   return at;
 }
 
@@ -235,14 +233,14 @@ void BranchBank::follow_leader() {
 }
 
 /// By the linearisation at `mean`, where the residual is `innovation`. Neighbours that err alike count for less.
-void BranchBank::weigh(const SegmentLinearization& at, const Eigen::VectorXd& mean, const Eigen::Vector3d& innovation,
-                       const Eigen::Matrix3d& noise, double alike) {
+void BranchBank::weigh(const SegmentLinearization& at, const Eigen::VectorXd& mean, const Rows& innovation,
+                       const RowsCovariance& noise, double alike) {
   const double rate = std::pow(std::max(alike, 1.0), -kTempered);
   Eigen::VectorXd scores(branches_.weights().size());
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     const Estimate& known = branches_[i].estimate;
-    const Eigen::Vector3d left = innovation - at.by_parameter * (known.mean - mean);
-    const Eigen::Matrix3d spread = innovation_covariance(known.covariance, at.by_parameter, noise);
+    const Rows left = innovation - at.by_parameter * (known.mean - mean);
+    const RowsCovariance spread = innovation_covariance(known.covariance, at.by_parameter, noise);
     scores[static_cast<Eigen::Index>(i)] = rate * student_log_score(normalised_square(left, spread), spread);
   }
   branches_.weigh(scores);
@@ -250,7 +248,7 @@ void BranchBank::weigh(const SegmentLinearization& at, const Eigen::VectorXd& me
 
 /// The most probable mean of the mixture is where all branches are updated.
 IekfUpdate BranchBank::update_all(const MotionModel& model, const BranchSegment& driven, SegmentLinearization at,
-                                  const Eigen::Matrix3d& noise, const IekfSettings& settings) {
+                                  const RowsCovariance& noise, const IekfSettings& settings) {
   IekfUpdate update = iekf_update(model, mixture(), driven.inputs, driven.segment, std::move(at), noise, settings);
   if (branches_.size() == 1) {
     branches_[0].estimate = update.estimate;
@@ -260,7 +258,7 @@ IekfUpdate BranchBank::update_all(const MotionModel& model, const BranchSegment&
     return update;
   }
   for (Branch& branch : branches_.keys()) {
-    update_branch(model, branch.estimate, update, {.value = driven.segment.measured.vector(), .noise = noise},
+    update_branch(model, branch.estimate, update, {.value = rows_of(driven.segment.measured), .noise = noise},
                   settings);
   }
   const Eigen::VectorXd found = update.estimate.mean;
@@ -274,10 +272,10 @@ IekfUpdate BranchBank::learn(const MotionModel& model, const BranchSegment& driv
   const Segment& segment = driven.segment;
   const Eigen::VectorXd mean = state.estimate.mean;
   auto at = linearize_segment(model, mean, driven.inputs, segment);
-  const Eigen::Matrix3d expected = expected_noise(at.path, segment.measured, settings.noise.shape);
-  const Eigen::Matrix3d noise = scaled_covariance(expected, scale_for(at.path, state.noise_scale.value()));
-  const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
-  const Eigen::Matrix3d covariance = innovation_covariance(state.estimate.covariance, at.by_parameter, noise);
+  const RowsCovariance expected = expected_noise(at.path, rows_of(segment.measured), settings.noise.shape);
+  const RowsCovariance noise = scaled_covariance(expected, scale_for(at.path, state.noise_scale.value()));
+  const Rows innovation = error_of(segment, at);
+  const RowsCovariance covariance = innovation_covariance(state.estimate.covariance, at.by_parameter, noise);
   const double motion = seconds_of_motion(at.path, driven.speeds);
   ++segments_;
   if (motion > kMoves * (segment.end - segment.start)) {

@@ -247,9 +247,9 @@ IekfUpdate CausalFilter::follow_branches(const InputHistory& inputs, const Segme
   return update;
 }
 
-Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,
-                                      const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
-                                      const Eigen::Vector3d& scale) {
+RowsCovariance prediction_covariance(const SegmentLinearization& at,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
+                                     const Eigen::Vector3d& scale) {
   return at.by_parameter * parameters * at.by_parameter.transpose() +
          segment_noise(at.path, at.predicted, shape, scale);
 }

@@ -10,7 +10,6 @@
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/present.hpp"
-#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
@@ -19,15 +18,6 @@ namespace {
 
 constexpr std::size_t kSlice = 2;   // segments that are linearised at a time
 SLIPWISE_TUNING(kTolerance, 0.03);  // of -2 log posterior: a sixth of a standard deviation
-
-/// Factor of the variances of what measured a segment, where the filters have learned a `scale`.
-Eigen::Vector3d noise_size(const Segment& segment, const Eigen::Vector3d& scale) {
-  if (!segment.source) {
-    return scale;
-  }
-  const Eigen::Vector3d& factor = segment.source->noise_factor;
-  return segment.source->own_noise ? factor : Eigen::Vector3d(factor.cwiseProduct(scale));
-}
 
 }  // namespace
 
@@ -46,26 +36,20 @@ void FilterRefit::weight(const DrivenSegment& driven) {
   const Segment& segment = driven.segment;
   const Eigen::Vector3d& scale = state_.noise_scale.value();
   auto at = linearize_segment(model_, state_.estimate.mean, driven.inputs, segment);
-  const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, noise_.shape, scale);
-  const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
-  const Eigen::Matrix3d covariance = at.by_parameter * state_.estimate.covariance * at.by_parameter.transpose() + noise;
+  const RowsCovariance noise = segment_noise(at.path, rows_of(segment.measured), noise_.shape, scale);
+  const Rows innovation = error_of(segment, at);
+  const RowsCovariance covariance = at.by_parameter * state_.estimate.covariance * at.by_parameter.transpose() + noise;
   const double nis = normalised_square(innovation, covariance);
   if (!(nis <= iekf_.gate)) {
     last_.reset();
     return;
   }
-  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-  const bool meet = last_ && same_stamp(segment.start, last_->end) && source_number(segment) == source_number(*last_);
-  const bool poses = !segment.chords && !at.path.heading_std;
-  if (!model_.learned().dynamics && poses && meet) {
-    const PoseStdRatio& met = segment.pose_std_ratio.front();
-    const Eigen::Vector3d size =
-        segment.source ? Eigen::Vector3d(noise_size(segment, scale).cwiseProduct(noise_size(*last_, scale)).cwiseSqrt())
-                       : scale;
-    shared = scaled_covariance(shared_pose_noise(segment.measured, last_->measured, noise_.shape, met), size);
+  RowsCovariance shared;
+  if (!model_.learned().dynamics && last_) {
+    shared = shared_noise(segment, *last_, noise_.shape, scale);
   }
   const double larger = std::max(std::sqrt(nis) / iekf_.huber, 1.0);
-  data_.push_back({.inputs = driven.inputs, .segment = segment, .noise = noise * larger, .shared = shared});
+  data_.push_back({.inputs = driven.inputs, .segment = segment, .noise = noise * larger, .shared = std::move(shared)});
   at_.push_back(std::move(at));
   places_.push_back(done_);
   last_ = segment;
@@ -104,9 +88,9 @@ void FilterRefit::learn_noise(const DrivenSegment& driven) {
   const bool fitted = fitted_ < places_.size() && places_[fitted_] == done_;
   const SegmentLinearization at =
       fitted ? std::move(at_[fitted_]) : linearize_segment(model_, state_.estimate.mean, driven.inputs, driven.segment);
-  const Eigen::Matrix3d expected = expected_noise(at.path, driven.segment.measured, noise_.shape);
+  const RowsCovariance expected = expected_noise(at.path, rows_of(driven.segment.measured), noise_.shape);
   if (shows_noise(driven.segment)) {
-    state_.noise_scale.learn(at, state_.estimate.covariance, driven.segment.measured, expected.diagonal());
+    state_.noise_scale.learn(at, state_.estimate.covariance, driven.segment, expected.diagonal());
   }
   if (fitted) {
     state_.scores.add(at, state_.estimate.covariance, driven.segment, data_[fitted_].noise);

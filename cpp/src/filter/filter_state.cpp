@@ -14,8 +14,8 @@ FilterState::FilterState(const MotionModel& model, const NoiseSettings& noise)
 IekfUpdate FilterState::learn(const MotionModel& model, const InputHistory& inputs, const Segment& segment,
                               const NoiseSettings& noise, const IekfSettings& iekf) {
   auto at = linearize_segment(model, estimate.mean, inputs, segment);
-  const Eigen::Matrix3d expected = expected_noise(at.path, segment.measured, noise.shape);
-  const Eigen::Matrix3d scaled = scaled_covariance(expected, scale_for(at.path, noise_scale.value()));
+  const RowsCovariance expected = expected_noise(at.path, rows_of(segment.measured), noise.shape);
+  const RowsCovariance scaled = scaled_covariance(expected, scale_for(at.path, noise_scale.value()));
   IekfUpdate update = iekf_update(model, estimate, inputs, segment, std::move(at), scaled, iekf);
   take(update, segment, {.expected = expected, .scaled = scaled});
   return update;
@@ -24,7 +24,7 @@ IekfUpdate FilterState::learn(const MotionModel& model, const InputHistory& inpu
 void FilterState::take(const IekfUpdate& update, const Segment& segment, const SegmentNoise& noise) {
   estimate = update.estimate;
   if (shows_noise(segment)) {
-    noise_scale.learn(update.at, estimate.covariance, segment.measured, noise.expected.diagonal());
+    noise_scale.learn(update.at, estimate.covariance, segment, noise.expected.diagonal());
   }
   if (update.weight > 0.0) {
     scores.add(update.at, estimate.covariance, segment, noise.scaled / update.weight);

@@ -18,36 +18,34 @@
 namespace slipwise {
 namespace {
 
-using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-
 SLIPWISE_TUNING(kUnknown, 1.0);    // [ln s]; a time is known at least to a factor of e before any data
 SLIPWISE_TUNING(kStraight, 0.03);  // [ln s], [s] or [-]; over so little of the actuator a segment is linear
 
-/// A segment's measured chart (x, y, theta) as a measurement of the parameters.
+/// What sensors measured of a segment as a measurement of the parameters.
 struct MeasuredSegment {
   using At = SegmentLinearization;
-  using Innovation = Eigen::Vector3d;
+  using Innovation = Rows;
 
   const MotionModel& model;
   const InputHistory& inputs;
   const Segment& segment;
-  const Eigen::Matrix3d& covariance;
+  const RowsCovariance& covariance;
 
   At near(const Eigen::VectorXd& parameters, const Eigen::VectorXd& step, const At& before) const {
     auto straight = carried(before, model, step, covariance);
     return straight ? std::move(*straight) : linearize_segment(model, parameters, inputs, segment);
   }
-  Innovation innovation(const At& at) const { return segment.measured.vector() - at.predicted.vector(); }
-  static const Jacobian& jacobian(const At& at) { return at.by_parameter; }
-  const Eigen::Matrix3d& noise(const At& /*at*/) const { return covariance; }
+  Innovation innovation(const At& at) const { return error_of(segment, at); }
+  static const RowsJacobian& jacobian(const At& at) { return at.by_parameter; }
+  const RowsCovariance& noise(const At& /*at*/) const { return covariance; }
 };
 
-/// How far the segment's chart bends away from its linearisation over the open part of the actuator: the covariance
+/// How far what is measured bends away from its linearisation over the open part of the actuator: the covariance
 /// of the second-order term along the actuator's principal directions (derivations/filter.md). The slip is
 /// linear enough.
-Eigen::Matrix3d second_order(const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
-                             const Segment& segment, const Eigen::Vector3d& predicted) {
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+RowsCovariance second_order(const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
+                            const Segment& segment, const Rows& predicted) {
+  RowsCovariance spread = RowsCovariance::Zero(predicted.size(), predicted.size());
   const auto rows = Eigen::seqN(model.slip_size(), model.actuator_size());
   const SymmetricEigen open = symmetric_eigen(estimate.covariance(rows, rows));
   for (Eigen::Index i = 0; i < model.actuator_size(); ++i) {
@@ -57,25 +55,25 @@ Eigen::Matrix3d second_order(const MotionModel& model, const Estimate& estimate,
     }
     const Eigen::VectorXd step = estimate.covariance(Eigen::all, rows) * open.vectors.col(i) / std;
     const auto at = [&](double sign) {
-      return integrate_segment(model, estimate.mean + sign * step, inputs, segment).sensor_motion().vector();
+      return integrate_segment(model, estimate.mean + sign * step, inputs, segment).rows();
     };
-    const Eigen::Vector3d second = (at(1.0) + at(-1.0)) / 2.0 - predicted;
+    const Rows second = (at(1.0) + at(-1.0)) / 2.0 - predicted;
     spread += 2.0 * second * second.transpose();
   }
   return spread;
 }
 
-void check(const MotionModel& model, const Estimate& prior, const Segment& segment, const Eigen::Matrix3d& noise) {
+void check(const MotionModel& model, const Estimate& prior, const Segment& segment, const RowsCovariance& noise) {
   model.check(prior.mean);
   if (prior.covariance.rows() != model.size() || prior.covariance.cols() != model.size()) {
     throw std::invalid_argument("the prior's covariance must be square with one row per parameter, " +
                                 std::to_string(model.size()) + "; got " + std::to_string(prior.covariance.rows()) +
                                 " x " + std::to_string(prior.covariance.cols()));
   }
-  if (!(segment.end > segment.start) || !segment.measured.vector().allFinite()) {
+  if (!(segment.end > segment.start) || !rows_of(segment.measured).allFinite()) {
     throw std::invalid_argument("a segment must end after it starts and have finite measurements");
   }
-  if (!noise.allFinite() || !Cholesky(noise).positive_definite()) {
+  if (noise.rows() != rows_of(segment.measured).size() || !noise.allFinite() || !Cholesky(noise).positive_definite()) {
     throw std::invalid_argument("a segment's noise covariance must be finite and positive definite");
   }
 }
@@ -84,7 +82,7 @@ void check(const MotionModel& model, const Estimate& prior, const Segment& segme
 
 // NOLINTNEXTLINE(readability-function-size): knowledge (model, prior), observations, and the settings.
 IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
-                       const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings) {
+                       const Segment& segment, const RowsCovariance& noise, const IekfSettings& settings) {
   check(model, prior, segment, noise);
   return iekf_update(model, prior, inputs, segment, linearize_segment(model, prior.mean, inputs, segment), noise,
                      settings);
@@ -92,11 +90,11 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
 
 // NOLINTNEXTLINE(readability-function-size): the same, and what is at hand already.
 IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
-                       const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
+                       const Segment& segment, SegmentLinearization at_prior, const RowsCovariance& noise,
                        const IekfSettings& settings) {
   check(model, prior, segment, noise);
   IekfUpdate update{.estimate = prior,
-                    .innovation = segment.measured.vector() - at_prior.predicted.vector(),
+                    .innovation = error_of(segment, at_prior),
                     .innovation_covariance = innovation_covariance(prior.covariance, at_prior.by_parameter, noise),
                     .nis = 0.0,
                     .weight = 1.0,
@@ -112,7 +110,7 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
     update.weight = settings.huber / sigmas;
     update.status = Status::Downweighted;
   }
-  const Eigen::Matrix3d weighted_noise = noise / update.weight;
+  const RowsCovariance weighted_noise = noise / update.weight;
   const MeasuredSegment measured{model, inputs, segment, weighted_noise};
   const MapUpdate problem(prior, measured);
   auto now = problem.begin(std::move(at_prior));
@@ -125,7 +123,7 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
   update.estimate.mean = now.state;
   linear_update(update.estimate.covariance, now.at.by_parameter, weighted_noise);
   if (model.actuator_size() > 0) {
-    update.bent = second_order(model, update.estimate, inputs, segment, now.at.predicted.vector());
+    update.bent = second_order(model, update.estimate, inputs, segment, now.at.predicted);
     if (!update.bent.isZero(0.0)) {
       update.estimate.covariance = prior.covariance;
       linear_update(update.estimate.covariance, now.at.by_parameter, weighted_noise + update.bent);

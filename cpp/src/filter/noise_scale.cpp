@@ -13,35 +13,36 @@ SLIPWISE_TUNING(kLeastFraction, 0.1);  // of a squared error that is noise, howe
 
 }  // namespace
 
-void NoiseScale::learn(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Pose2& measured,
-                       const Eigen::Vector3d& expected) {
+void NoiseScale::learn(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Segment& segment,
+                       const Rows& expected) {
   if (!settings_.adapt) {
     return;
   }
-  const Eigen::Vector3d residual = measured.vector() - at.predicted.vector();
-  const Eigen::Matrix3d open = at.by_parameter * covariance * at.by_parameter.transpose();
-  follow(shown_by(at.path, residual.cwiseAbs2() + open.diagonal(), expected), expected);
+  const RowsCovariance open = at.by_parameter * covariance * at.by_parameter.transpose();
+  follow(at.path.directions(), error_of(segment, at).cwiseAbs2() + open.diagonal(), expected);
 }
 
-Eigen::Vector3d NoiseScale::shown_by(const SegmentPath& path, Eigen::Vector3d squared,
-                                     const Eigen::Vector3d& expected) const {
-  if (path.heading_std) {
-    squared.head<2>() = value_.head<2>().cwiseProduct(expected.head<2>());
-  }
-  return squared;
-}
-
-void NoiseScale::learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open,
-                                  const Eigen::Vector3d& expected) {
+void NoiseScale::learn_prediction(const Directions& directions, const RowErrors& shown) {
   if (settings_.adapt) {
-    follow((squared - open).cwiseMax(kLeastFraction * squared), expected);
+    follow(directions, (shown.squared - shown.open).cwiseMax(kLeastFraction * shown.squared), shown.expected);
   }
 }
 
-void NoiseScale::follow(const Eigen::Vector3d& squared, const Eigen::Vector3d& expected) {
+/// A direction that no row has stays as it is; of several rows, their mean counts.
+void NoiseScale::follow(const Directions& directions, const Rows& squared, const Rows& expected) {
   segments_ += 1.0;
   const double gain = std::max(1.0 / (segments_ + settings_.prior_segments), 1.0 / settings_.forgetting_time);
-  value_ += gain * (squared.cwiseQuotient(expected).cwiseMin(settings_.largest * value_) - value_);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rows = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < directions.size(); ++i) {
+    sum[directions[i]] += squared[i] / expected[i];
+    rows[directions[i]] += 1.0;
+  }
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (rows[i] > 0.0) {
+      value_[i] += gain * (std::min(sum[i] / rows[i], settings_.largest * value_[i]) - value_[i]);
+    }
+  }
 }
 
 }  // namespace slipwise

@@ -9,13 +9,12 @@ namespace slipwise {
 ScoredSegment PredictiveScore::score(const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
                                      const Segment& segment) {
   const auto at = linearize_segment(model, estimate.mean, inputs, segment);
-  const Eigen::Matrix3d open = at.by_parameter * estimate.covariance * at.by_parameter.transpose();
-  const Eigen::Matrix3d expected = expected_noise(at.path, at.predicted, settings_.shape);
-  const Eigen::Matrix3d covariance = open + scaled_covariance(expected, scale_for(at.path, noise_scale_.value()));
-  const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
+  const RowsCovariance open = at.by_parameter * estimate.covariance * at.by_parameter.transpose();
+  const RowsCovariance expected = expected_noise(at.path, at.predicted, settings_.shape);
+  const RowsCovariance covariance = open + scaled_covariance(expected, scale_for(at.path, noise_scale_.value()));
+  const Rows innovation = error_of(segment, at);
   if (shows_noise(segment)) {
-    noise_scale_.learn_prediction(noise_scale_.shown_by(at.path, innovation.cwiseAbs2(), expected.diagonal()),
-                                  open.diagonal(), expected.diagonal());
+    noise_scale_.learn_prediction(at.path.directions(), {innovation.cwiseAbs2(), open.diagonal(), expected.diagonal()});
   }
   return {innovation, covariance, normalised_square(innovation, covariance)};
 }

@@ -35,7 +35,7 @@ double block_trace(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const std
 }
 
 /// Noise^-1 J, by factors that are compiled elsewhere.
-Eigen::Matrix3Xd weighted_by(const Eigen::Matrix3d& noise, const Eigen::Matrix3Xd& jacobian) {
+RowsJacobian weighted_by(const RowsCovariance& noise, const RowsJacobian& jacobian) {
   return solve_innovation(noise, jacobian);
 }
 Eigen::MatrixXd weighted_by(const Eigen::MatrixXd& noise, const Eigen::MatrixXd& jacobian) {
@@ -68,8 +68,8 @@ void ScoreCovariance::restart() {
 }
 
 void ScoreCovariance::add(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Segment& segment,
-                          const Eigen::Matrix3d& noise) {
-  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
+                          const RowsCovariance& noise) {
+  const Rows residual = error_of(segment, at);
   add_score(at.by_parameter, residual, covariance, noise, (segment.start + segment.end) / 2.0);
 }
 

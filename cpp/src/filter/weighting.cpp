@@ -28,20 +28,43 @@ Eigen::VectorXd updated_weights(const Eigen::VectorXd& weights, const Eigen::Vec
   return heavier / heavier.sum();
 }
 
-double student_log_score(double nis, const Eigen::Matrix3d& covariance) {
-  return -0.5 * std::log(covariance.determinant()) - 0.5 * (kTailDegrees + 3.0) * std::log1p(nis / kTailDegrees);
+namespace {
+
+bool three(const RowsCovariance& covariance) {
+  return covariance.rows() == 3;
+}  // that most segments have: by cofactors
+
+double determinant_of(const RowsCovariance& covariance) {
+  return three(covariance) ? Eigen::Matrix3d(covariance).determinant() : covariance.determinant();
 }
 
-Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, std::span<const Eigen::Vector3d> innovations,
-                                  std::span<const Eigen::Matrix3d> covariances) {
+RowsCovariance inverse_of(const RowsCovariance& covariance) {
+  return three(covariance) ? RowsCovariance(Eigen::Matrix3d(covariance).inverse())
+                           : RowsCovariance(covariance.inverse());
+}
+
+}  // namespace
+
+double student_log_score(double nis, const RowsCovariance& covariance) {
+  return -0.5 * std::log(determinant_of(covariance)) - 0.5 * (kTailDegrees + 3.0) * std::log1p(nis / kTailDegrees);
+}
+
+Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, std::span<const Rows> innovations,
+                                  std::span<const RowsCovariance> covariances) {
   if (std::ssize(innovations) != weights.size() || std::ssize(covariances) != weights.size()) {
     throw std::invalid_argument("each weight needs an innovation and a covariance");
   }
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  RowsCovariance covariance;
   for (std::size_t i = 0; i < covariances.size(); ++i) {
+    if (i == 0) {
+      covariance.setZero(covariances[i].rows(), covariances[i].rows());
+    }
+    if (covariances[i].rows() != covariance.rows() || innovations[i].size() != covariance.rows()) {
+      throw std::invalid_argument("candidates must predict the same rows");
+    }
     covariance += weights[static_cast<Eigen::Index>(i)] * covariances[i];
   }
-  const Eigen::Matrix3d precision = covariance.inverse();
+  const RowsCovariance precision = inverse_of(covariance);
   Eigen::VectorXd scores(weights.size());
   for (std::size_t i = 0; i < innovations.size(); ++i) {
     const double nis = innovations[i].dot(precision * innovations[i]);

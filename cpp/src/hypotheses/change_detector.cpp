@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <ranges>
 #include <stdexcept>
 #include <utility>
 
@@ -31,8 +32,8 @@ struct Fitted {
   Eigen::VectorXd prior_weight;
 };
 
-Eigen::VectorXd squares_by_segment(const Eigen::VectorXd& residuals) {
-  return Eigen::Map<const Eigen::Matrix3Xd>(residuals.data(), 3, residuals.size() / 3).colwise().squaredNorm();
+Eigen::VectorXd squares_by_segment(const Eigen::VectorXd& residuals, Eigen::Index rows) {
+  return residuals.reshaped(rows, residuals.size() / rows).colwise().squaredNorm();
 }
 
 Eigen::MatrixXd normal_matrix(const Eigen::MatrixXd& by_change, const Fitted& at) {
@@ -41,33 +42,33 @@ Eigen::MatrixXd normal_matrix(const Eigen::MatrixXd& by_change, const Fitted& at
   return normal;
 }
 
-void reweigh(Fitted& at, const Eigen::VectorXd& left) {
-  const Eigen::VectorXd squares = squares_by_segment(left);
+void reweigh(Fitted& at, const Eigen::VectorXd& left, Eigen::Index rows) {
+  const Eigen::VectorXd squares = squares_by_segment(left, rows);
   for (Eigen::Index i = 0; i < at.row_weight.size(); ++i) {
-    at.row_weight[i] = (kTailDegrees + 3.0) / (kTailDegrees + squares[i / 3]);
+    at.row_weight[i] = (kTailDegrees + 3.0) / (kTailDegrees + squares[i / rows]);
   }
   at.prior_weight = (1.0 + at.change.array().square() / 2.0).inverse();
 }
 
 /// Starts from least squares: from no change, residuals that agree with each other would all look like outliers.
-Fitted fit(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change) {
+Fitted fit(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change, Eigen::Index rows) {
   const Eigen::Index changes = by_change.cols();
   Fitted at{Eigen::VectorXd::Zero(changes), Eigen::VectorXd::Ones(residuals.size()),
             Eigen::VectorXd::Constant(changes, kStart)};
   for (int i = 0; i < kIterations; ++i) {
     at.change =
         Cholesky(normal_matrix(by_change, at)).solve(by_change.transpose() * at.row_weight.cwiseProduct(residuals));
-    reweigh(at, residuals - by_change * at.change);
+    reweigh(at, residuals - by_change * at.change, rows);
   }
   return at;
 }
 
 }  // namespace
 
-ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change) {
-  const Fitted at = fit(residuals, by_change);
-  const Eigen::ArrayXd before = squares_by_segment(residuals);
-  const Eigen::ArrayXd after = squares_by_segment(residuals - by_change * at.change);
+ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change, Eigen::Index rows) {
+  const Fitted at = fit(residuals, by_change, rows);
+  const Eigen::ArrayXd before = squares_by_segment(residuals, rows);
+  const Eigen::ArrayXd after = squares_by_segment(residuals - by_change * at.change, rows);
   const double explained = 0.5 * (kTailDegrees + 3.0) * ((kTailDegrees + before) / (kTailDegrees + after)).log().sum();
   const Cholesky normal(normal_matrix(by_change, at));
   const Eigen::MatrixXd spread = normal.inverse();
@@ -89,13 +90,13 @@ ChangeDetector::ChangeDetector(const ChangeSettings& settings, ChangeKinds kinds
   nominal_ = Eigen::MatrixXd::Ones(settings.longest + 1, std::ssize(kinds_));
 }
 
-ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
-                               const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change) {
+ChangeTest ChangeDetector::see(const Directions& directions, const Rows& innovation, const RowsCovariance& covariance,
+                               const RowsJacobian& by_change) {
   if (!settings_.detect || kinds_.empty()) {
     return {};
   }
   observed_ += 1.0;
-  recent_.push_back(whitened(innovation, covariance, by_change));
+  recent_.push_back(whitened(directions, innovation, covariance, by_change));
   if (std::ssize(recent_) > settings_.longest) {
     recent_.pop_front();
   }
@@ -118,18 +119,24 @@ ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::M
 /// By the covariance, and by how large residuals were up to `longest` segments ago: a covariance that is still wide
 /// from the first segments would hide a change. A segment teaches the size as much as it could tell of a change: poses
 /// of a parked robot hardly err, and say nothing of those of a moving one.
-ChangeDetector::Whitened ChangeDetector::whitened(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
-                                                  const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change) {
+ChangeDetector::Whitened ChangeDetector::whitened(const Directions& directions, const Rows& innovation,
+                                                  const RowsCovariance& covariance, const RowsJacobian& by_change) {
   // S^-1/2 by eigenvectors: the one root that is symmetric keeps the directions (x, y, theta) apart.
-  const Eigen::Matrix3d root = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).operatorInverseSqrt();
-  const Eigen::Vector3d residual = root * innovation;
-  const Eigen::Matrix<double, 3, Eigen::Dynamic> derivative = root.lazyProduct(by_change);
+  const RowsCovariance root = Eigen::SelfAdjointEigenSolver<RowsCovariance>(covariance).operatorInverseSqrt();
+  const Rows residual = root * innovation;
+  const RowsJacobian derivative = root.lazyProduct(by_change);
   const Eigen::Vector3d last = sizes_.back();
   const double commanded = 1.0 - 1.0 / (1.0 + derivative.squaredNorm());
   sized_ += commanded;
   const double gain = commanded * std::max(1.0 / (sized_ + kSizeSegments), 1.0 / settings_.forgetting_time);
-  sizes_.emplace_back(last + gain * (residual.cwiseAbs2().cwiseMin(kLargestSquare * last) - last));
-  const Eigen::Vector3d unit = sizes_.front().cwiseMax(kLeastSize).cwiseMin(1.0).cwiseSqrt().cwiseInverse();
+  Eigen::Vector3d next = last;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    const double size = last[directions[i]];
+    next[directions[i]] += gain * (std::min(residual[i] * residual[i], kLargestSquare * size) - size);
+  }
+  sizes_.push_back(next);
+  const Eigen::Vector3d units = sizes_.front().cwiseMax(kLeastSize).cwiseMin(1.0).cwiseSqrt().cwiseInverse();
+  const Rows unit = units(directions);
   if (std::ssize(sizes_) > settings_.longest) {
     sizes_.pop_front();
   }
@@ -154,16 +161,20 @@ double ChangeDetector::test_last(int segments) {
 /// The last segments, as if their residuals were `nominal` times as large in square.
 ChangeFit ChangeDetector::fit_last(int segments, const std::vector<Eigen::Index>& kind, double nominal) const {
   const double unit = 1.0 / std::sqrt(std::max(nominal, 1.0));
-  const Eigen::Index rows = Eigen::Index{3} * segments;
-  Eigen::VectorXd residuals(rows);
-  Eigen::MatrixXd by_change(rows, std::ssize(kind));
-  for (int i = 0; i < segments; ++i) {
-    const Eigen::Index row = Eigen::Index{3} * i;
-    const Whitened& segment = recent_[recent_.size() - static_cast<std::size_t>(segments - i)];
-    residuals.segment<3>(row) = unit * segment.residual;
-    by_change.middleRows<3>(row) = unit * segment.by_change(Eigen::all, kind);
+  const auto last = recent_ | std::views::drop(std::ssize(recent_) - segments);
+  Eigen::Index rows = 1;  // of a segment that has most; others are filled up with rows of nothing
+  for (const Whitened& segment : last) {
+    rows = std::max(rows, segment.residual.size());
   }
-  return fit_change(residuals, by_change);
+  Eigen::VectorXd residuals = Eigen::VectorXd::Zero(rows * segments);
+  Eigen::MatrixXd by_change = Eigen::MatrixXd::Zero(rows * segments, std::ssize(kind));
+  Eigen::Index row = 0;
+  for (const Whitened& segment : last) {
+    residuals.segment(row, segment.residual.size()) = unit * segment.residual;
+    by_change.middleRows(row, segment.residual.size()) = unit * segment.by_change(Eigen::all, kind);
+    row += rows;
+  }
+  return fit_change(residuals, by_change, rows);
 }
 
 void ChangeDetector::learn_nominal(double& nominal, const ChangeFit& fit) const {

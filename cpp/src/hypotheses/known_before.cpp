@@ -56,7 +56,8 @@ std::vector<std::pair<InputHistory, Segment>> steady_segments(const ReferenceSpe
     for (const double omega : {-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0}) {
       const BodyTwist twist{.v = v * speeds.v, .vy = 0.0, .omega = omega * speeds.omega};
       const Pose2 end = exp(Eigen::Vector3d(twist.v * seconds, 0.0, twist.omega * seconds));
-      all.emplace_back(InputHistory({-1.0}, {twist}), Segment{.start = 0.0, .end = seconds, .measured = end});
+      all.emplace_back(InputHistory({-1.0}, {twist}),
+                       Segment{.start = 0.0, .end = seconds, .measured = measured_pose(end)});
     }
   }
   return all;

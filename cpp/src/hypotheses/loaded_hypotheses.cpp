@@ -37,8 +37,12 @@ void ChangeDetector::check_loaded(const ChangeDetector& made, Eigen::Index chang
               nominal_.rows() == made.nominal_.rows() && nominal_.cols() == made.nominal_.cols() &&
               nominal_.allFinite() && !sizes_.empty(),
           "the test for a change is another one");
-  require(std::ssize(recent_) <= settings_.longest &&
-              std::ranges::all_of(recent_, [&](const Whitened& each) { return each.by_change.cols() == changes; }),
+  require(std::ssize(recent_) <= settings_.longest && std::ranges::all_of(recent_,
+                                                                          [&](const Whitened& each) {
+                                                                            return each.by_change.cols() == changes &&
+                                                                                   each.by_change.rows() ==
+                                                                                       each.residual.size();
+                                                                          }),
           "the test for a change has seen other changes");
 }
 

@@ -27,7 +27,7 @@ bool far_noisier(const Segment& segment, const Eigen::Vector3d& scale) {
   if (shows_noise(segment)) {
     return false;
   }
-  return present(segment.source).noise_factor.cwiseQuotient(scale).array().log().mean() > std::log(kNoisy);
+  return segment.measured.front().sensor.noise_factor.cwiseQuotient(scale).array().log().mean() > std::log(kNoisy);
 }
 
 /// One basis as it is, several as their union.
@@ -231,12 +231,11 @@ ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segme
   }
   const AverageState& known = before_.front();
   const auto at = linearize_segment(model_, known.estimate.mean, inputs, segment);
-  const Eigen::Matrix3d covariance =
+  const RowsCovariance covariance =
       prediction_covariance(at, known.estimate.covariance, filters_[0].noise().shape, known.noise_scale);
   const Eigen::VectorXd nominal = slip_prior_std(model_.basis(), speeds_.reference(), change.fraction);
-  const Eigen::Matrix<double, 3, Eigen::Dynamic> by_change =
-      at.by_parameter(Eigen::all, changing_) * nominal(changing_).asDiagonal();
-  return detector_.see(segment.measured.vector() - at.predicted.vector(), covariance, by_change);
+  const RowsJacobian by_change = at.by_parameter(Eigen::all, changing_) * nominal(changing_).asDiagonal();
+  return detector_.see(at.path.directions(), error_of(segment, at), covariance, by_change);
 }
 
 /// Every model once as if the terrain had changed and once as it was: what follows decides between them, so that a

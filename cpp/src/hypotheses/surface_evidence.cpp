@@ -57,11 +57,10 @@ void SurfaceEvidence::Under::decay(double seconds) {
   covariance.diagonal().tail(terms) += (1.0 - keep * keep) * nominal;
 }
 
-double SurfaceEvidence::Under::learn(const Eigen::Vector3d& innovation,
-                                     const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_state,
-                                     const Eigen::Matrix3d& noise) {
-  const Eigen::Vector3d left = innovation - by_state * state;
-  const Eigen::Matrix3d expected = innovation_covariance(covariance, by_state, noise);
+double SurfaceEvidence::Under::learn(const Rows& innovation, const RowsJacobian& by_state,
+                                     const RowsCovariance& noise) {
+  const Rows left = innovation - by_state * state;
+  const RowsCovariance expected = innovation_covariance(covariance, by_state, noise);
   const double nis = normalised_square(left, expected);
   const double heavier = std::max(1.0, (kTailDegrees + nis) / (kTailDegrees + 3.0));  // an outlier teaches less
   state += linear_update(covariance, by_state, heavier * noise) * left;
@@ -76,11 +75,12 @@ double SurfaceEvidence::add(const MotionModel& model, const InputHistory& inputs
   const Eigen::Index size = model.size();
   const Eigen::VectorXd away = under_[under_.heaviest()].state.head(size);
   const auto at = linearize_segment(model, posterior_.estimate.mean + away, inputs, segment);
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_state(3, size + std::ssize(places_));
+  RowsJacobian by_state(at.by_parameter.rows(), size + std::ssize(places_));
   by_state.leftCols(size) = at.by_parameter;
   by_state.rightCols(std::ssize(places_)) = at.by_parameter(Eigen::all, places_);
-  const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, posterior_.noise, posterior_.noise_scale);
-  const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector() + at.by_parameter * away;
+  const RowsCovariance noise =
+      segment_noise(at.path, rows_of(segment.measured), posterior_.noise, posterior_.noise_scale);
+  const Rows innovation = error_of(segment, at) + at.by_parameter * away;
   Eigen::VectorXd scores(under_.weights().size());
   for (std::size_t i = 0; i < under_.size(); ++i) {
     under_[i].decay(passed);

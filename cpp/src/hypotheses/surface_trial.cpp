@@ -235,19 +235,25 @@ double ModelAverage::apart(const SurfaceMemory& a, const SurfaceMemory& b, const
   const Eigen::Index slip = model_.slip_size();
   const DisturbedTerms terms = disturbed_terms(model_, of_a.prior_std);
   const double each = settings_.surfaces.alike / static_cast<double>(count);  // segments that are like one probe
-  Eigen::MatrixXd by_slip(3 * count, slip);
-  Eigen::VectorXd difference(3 * count);
-  Eigen::MatrixXd open = Eigen::MatrixXd::Zero(3 * count, 3 * count);
+  Eigen::Index rows = 0;
+  for (const Recent& probe : probes_) {
+    rows += rows_of(probe.segment.measured).size();
+  }
+  Eigen::MatrixXd by_slip(rows, slip);
+  Eigen::VectorXd difference(rows);
+  Eigen::MatrixXd open = Eigen::MatrixXd::Zero(rows, rows);
   double seconds = 0.0;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Recent& probe = probes_[static_cast<std::size_t>(i)];
+  Eigen::Index row = 0;
+  for (const Recent& probe : probes_) {
     const auto at = linearize_segment(model_, of_a.estimate.mean, probe.inputs, probe.segment);
     const auto other = linearize_segment(model_, of_b.estimate.mean, probe.inputs, probe.segment);
-    by_slip.middleRows<3>(3 * i) = at.by_parameter.leftCols(slip);
-    difference.segment<3>(3 * i) = other.predicted.vector() - at.predicted.vector();
+    const Eigen::Index measured = at.predicted.size();
+    by_slip.middleRows(row, measured) = at.by_parameter.leftCols(slip);
+    difference.segment(row, measured) = other.predicted - at.predicted;
     const Eigen::Vector3d scale = (of_a.noise_scale + of_b.noise_scale) / 2.0;
-    open.block<3, 3>(3 * i, 3 * i) =
-        segment_noise(at.path, probe.segment.measured, filters_[0].noise().shape, scale) / each;
+    open.block(row, row, measured, measured) =
+        segment_noise(at.path, rows_of(probe.segment.measured), filters_[0].noise().shape, scale) / each;
+    row += measured;
     seconds += each * (probe.segment.end - probe.segment.start);
   }
   Eigen::MatrixXd common =

@@ -21,6 +21,10 @@ constexpr double kUnknownTurn = 3.0;   // [rad] of a turn that a gyro did not se
 constexpr double kActuatorBack = 5.0;  // [s] of commands before wheel speeds; their filter goes on from the last
 constexpr double kLargestForce = 1e3;  // [m/s^2] that a caller may expect
 
+Measured measured_turn(const GyroTurn& turn) {
+  return {.sensor = {.kind = YawRateSensor{.std = turn.std}}, .z = Rows::Constant(1, turn.angle)};
+}
+
 }  // namespace
 
 /// A pose as it is; a position with the heading that its course makes, where it has one.
@@ -42,10 +46,16 @@ void SegmentStream::set_course(Segment& segment, const SegmentCut& cut) const {
   if (!first || !second) {
     return;
   }
-  segment.chords = {first->chord, second->chord};
+  Measured& course = segment.measured.front();
+  PositionSensor positions{.chords = {first->chord, second->chord},
+                           .std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
   if (const auto turn = gyro_.turn(segment.start, segment.end)) {
-    segment.measured.theta = turn->angle;
-    segment.gyro_std = turn->std;
+    positions.turn = false;
+    course.z.conservativeResize(2);
+    course.sensor.kind = positions;
+    segment.measured.push_back(measured_turn(*turn));
+  } else {
+    course.sensor.kind = positions;
   }
 }
 
@@ -64,10 +74,9 @@ void SegmentStream::turn_on(const YawRate& sample) {
 
 /// The turn alone, by a gyro whose bias is known as far as it is when the segment is complete.
 void SegmentStream::set_turn(Segment& segment) const {
-  const GyroTurn turn = gyro_.turn(segment.start, segment.end).value_or(GyroTurn{segment.measured.theta, kUnknownTurn});
-  segment.measured = {0.0, 0.0, turn.angle};
-  segment.gyro_std = turn.std;
-  segment.source = SegmentSource{.heading_only = true};
+  const GyroTurn turn =
+      gyro_.turn(segment.start, segment.end).value_or(GyroTurn{rows_of(segment.measured)[2], kUnknownTurn});
+  segment.measured = {measured_turn(turn)};
 }
 
 void SegmentStream::reject_gated(const GatedPoses& gated) {
@@ -183,7 +192,8 @@ std::vector<InputSample> SegmentStream::repeated(const std::vector<InputSample>&
 }
 
 DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<InputSample>& future) const {
-  Segment segment{.start = newest_, .end = newest_ + horizon, .sensor = settings_.sensor, .heading = heading_};
+  Segment segment{
+      .start = newest_, .end = newest_ + horizon, .measured = measured_pose({}, settings_.sensor), .heading = heading_};
   stand_on_ground(segment, true);
   const bool by_wheels = !settings_.from_commands;
   if (!by_wheels) {
@@ -219,7 +229,7 @@ InputSpread SegmentStream::spread_ahead(double horizon, const std::vector<InputS
 }
 
 DrivenSegment SegmentStream::stretch(double start, double end, double back) const {
-  Segment segment{.start = start, .end = end, .sensor = settings_.sensor, .heading = heading_};
+  Segment segment{.start = start, .end = end, .measured = measured_pose({}, settings_.sensor), .heading = heading_};
   stand_on_ground(segment, false);
   if (settings_.from_commands) {
     set_actuator_state(segment);

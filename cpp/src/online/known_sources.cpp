@@ -18,20 +18,22 @@ namespace {
 SLIPWISE_TUNING(kOpen, 0.25);          // of a segment's noise variances: what is not known of its source may be as much
 constexpr double kLongestPart = 1.06;  // a segment may be longer than asked for by this factor
 
-SegmentSource with_noise(const SourceNoise& noise, const std::array<std::size_t, 2>& classes,
-                         const Eigen::Vector3d& scale, SegmentSource source) {
-  source.own_noise = !noise.is_reference(classes);
-  if (source.own_noise) {
-    source.noise_factor = noise.size(classes, scale);
+/// Gives sensors the noise of the source that they are of.
+void set_noise(Segment& segment, const SourceNoise& noise, const std::array<std::size_t, 2>& classes,
+               const Eigen::Vector3d& scale) {
+  for (auto& [sensor, z] : segment.measured) {
+    sensor.own_noise = !noise.is_reference(classes);
+    if (sensor.own_noise) {
+      sensor.noise_factor = noise.size(classes, scale);
+    }
   }
-  return source;
 }
 
 }  // namespace
 
 DrivenSegment measured_by(const SourceNoise& noise, const TargetSegment& target, const Eigen::Vector3d& scale) {
   DrivenSegment driven = target.driven;
-  driven.segment.source = with_noise(noise, target.classes, scale, {});
+  set_noise(driven.segment, noise, target.classes, scale);
   return driven;
 }
 
@@ -61,13 +63,12 @@ void KnownSources::look(const MotionPosterior& posterior, const DrivenSegment& d
     return;
   }
   noise_.meet(item.classes[0], posterior.noise_scale);
-  auto at = linearize_segment(posterior.model, posterior.estimate.mean, seen.inputs, seen.segment);
-  const Eigen::Vector3d error = chart_error(seen.segment.measured.vector(), at.predicted.vector());
-  at.path.noise_factor.setOnes();
-  noise_.learn(item.classes[0],
-               {.squared = error.cwiseAbs2(),
-                .open = (at.by_parameter * posterior.estimate.covariance * at.by_parameter.transpose()).diagonal(),
-                .expected = expected_noise(at.path, seen.segment.measured, posterior.noise).diagonal()});
+  const auto at = linearize_segment(posterior.model, posterior.estimate.mean, seen.inputs, seen.segment);
+  const RowsCovariance open = at.by_parameter * posterior.estimate.covariance * at.by_parameter.transpose();
+  const RowsCovariance expected = slip_covariance(at.path, posterior.noise) +
+                                  at.path.measurement_noise(rows_of(seen.segment.measured), posterior.noise);
+  noise_.learn(item.classes[0], at.path.directions(),
+               {shorter_error_of(seen.segment, at).cwiseAbs2(), open.diagonal(), expected.diagonal()});
 }
 
 /// Puts the segment where and when it really was; false while too little is known of that.
@@ -77,20 +78,18 @@ bool KnownSources::calibrated(const MotionPosterior& posterior, DrivenSegment& d
     return true;
   }
   const SourceCalibration& calibration = calibrations_[item.source];
-  const Eigen::Vector3d open = calibration.open(posterior, driven);
+  const Rows open = calibration.open(posterior, driven);
   driven.segment = calibration.corrected(driven.segment);
-  if (driven.segment.source) {
-    driven.segment.source->noise_factor.array() *= 1.0 + open.array();
+  const Eigen::Vector3d larger = chart_of(directions_of(driven.segment.measured), open);
+  for (auto& [sensor, z] : driven.segment.measured) {
+    sensor.noise_factor.array() *= 1.0 + larger.array();
   }
   return open.maxCoeff() <= kOpen;
 }
 
 KnownSources::Found KnownSources::see(const MotionPosterior& posterior, SourceSegment item) {
   DrivenSegment& driven = item.driven;
-  const auto place = [&] {
-    driven.segment.source =
-        with_noise(noise_, item.classes, posterior.noise_scale, driven.segment.source.value_or(SegmentSource{}));
-  };
+  const auto place = [&] { set_noise(driven.segment, noise_, item.classes, posterior.noise_scale); };
   place();
   if (!later(seen_until_[item.source], driven.segment.start)) {
     seen_until_[item.source] = driven.segment.end;

@@ -139,7 +139,7 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   Knowledge knowledge = known_.at(stream_.newest() - std::max(embargo, kReady));
   const Structure structure = knowledge.motion->structure;  // whose errors are known
   DrivenSegment ahead = stream_.segment_ahead(horizon, inputs);
-  ahead.segment.sensor = {};
+  ahead.segment.measured = measured_pose({});
   CommandLimits limits;
   if (known.limits != nullptr && known.limits->posterior != nullptr) {
     knowledge.motion = known.limits->posterior;

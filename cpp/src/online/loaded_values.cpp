@@ -53,6 +53,19 @@ bool is_covariance(const Eigen::MatrixXd& matrix) {
 
 bool are_variances(const Eigen::VectorXd& values) { return possible(values) && (values.array() >= 0.0).all(); }
 
+/// Whether there are sensors, and each measured as many numbers as it has rows.
+bool are_of_sensors(const std::vector<Measured>& all) {
+  Eigen::Index rows = 0;
+  for (const auto& [sensor, z] : all) {
+    rows += z.size();
+    if (z.size() != directions(sensor).size() || !possible(z) || !possible(sensor.place.vector()) ||
+        !possible(sensor.clock) || !are_variances(sensor.noise_factor)) {
+      return false;
+    }
+  }
+  return 0 < rows && rows <= kMostRows;
+}
+
 bool goes_forward(const auto& all, auto stamp) { return std::ranges::is_sorted(all, {}, stamp); }
 
 }  // namespace
@@ -93,12 +106,12 @@ void LoadedValues::check(Type<SurfaceMemory> /*type*/, const SurfaceMemory& valu
 void LoadedValues::check(Type<Segment> /*type*/, const Segment& value) {
   const auto is_near = [&](double t) { return std::abs(t - value.start) <= kLongest; };
   require(possible(value.start) && value.end > value.start && is_near(value.end), "a segment has no duration");
-  require(possible(value.measured.vector()) && possible(value.sensor.vector()) && possible(value.heading) &&
-              (!value.initial || possible(*value.initial)) && possible(value.gx) && possible(value.gy),
+  require(are_of_sensors(value.measured) && possible(value.heading) && (!value.initial || possible(*value.initial)) &&
+              possible(value.gx) && possible(value.gy),
           "a segment is not finite");
   require(!value.known || (value.known->twist && is_near(value.known->until)), "the known state of a drive is missing");
-  require(!value.chords || (is_near((*value.chords)[0].from) && is_near((*value.chords)[1].from)),
-          "a chord begins far from its segment");
+  const auto [start, end] = path_span(value);
+  require(is_near(start) && is_near(end), "a sensor looks far away from its segment");
 }
 
 void LoadedValues::check(Type<SegmentPath> /*type*/, const SegmentPath& value) {
@@ -108,12 +121,21 @@ void LoadedValues::check(Type<SegmentPath> /*type*/, const SegmentPath& value) {
               (value.poses.size() == steps + 1 && value.times.size() == steps + 1),
           "a path has other poses than steps");
   require(value.tangents.size() == steps, "a path has other tangents than steps");
-  require(!value.course || value.poses.empty() || std::ranges::all_of(value.course->at, inside),
-          "a course leaves its path");
+  require(value.sights.size() == value.measured.size() && (value.poses.empty() || are_of_sensors(value.measured)),
+          "a path has other sights than sensors");
+  for (std::size_t i = 0; i < value.sights.size(); ++i) {
+    const Sight& sight = value.sights[i];
+    require(sight.stamps.size() == moments(value.measured[i].sensor, 0.0, 1.0).size() &&
+                (value.poses.empty() || std::ranges::all_of(sight.at, inside)),
+            "a sensor looks at what is not on its path");
+  }
 }
 
 void LoadedValues::check(Type<SegmentLinearization> /*type*/, const SegmentLinearization& value) {
-  require(possible(value.by_parameter), "a derivative is not finite");
+  const bool used_up = value.by_parameter.size() == 0;
+  require(used_up || (possible(value.by_parameter) && value.by_parameter.rows() == value.predicted.size() &&
+                      value.predicted.size() == value.path.directions().size()),
+          "a derivative is not of what sensors see, or is not finite");
 }
 
 void LoadedValues::check(Type<WheelSegment> /*type*/, const WheelSegment& value) {

@@ -19,7 +19,6 @@
 #include "slipwise/online/student_t.hpp"
 #include "slipwise/segment/input_spread.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
-#include "slipwise/segment/sensor_motion.hpp"
 
 namespace slipwise {
 namespace {
@@ -37,7 +36,8 @@ const MotionModel& baseline_model() {
 /// Driven by `other` inputs, where there are some.
 Eigen::Vector3d pose_after(const MotionModel& model, const Eigen::VectorXd& mean, const DrivenSegment& driven,
                            const std::optional<InputHistory>& other = std::nullopt) {
-  return integrate_segment(model, mean, other ? *other : driven.inputs, driven.segment).sensor_motion().vector();
+  const SegmentPath path = integrate_segment(model, mean, other ? *other : driven.inputs, driven.segment);
+  return chart_of(path.directions(), path.rows());
 }
 
 DisturbanceFilter disturbance_of(const LearnerSettings& settings) {
@@ -271,18 +271,20 @@ void MotionLearner::judge(const TargetSegment& target) {
   const SegmentList recent = known_.segments_before(segment.start);
   const SlipNow& slip = known_.slip_after(*known.disturbance, known.motion, recent);
   auto [expected, nominal] = known.disturbance->predict_both(*aged(known, segment), slip, driven);
-  const Eigen::Vector3d measured = segment.measured.vector();
+  const Rows measured = rows_of(segment.measured);
+  const Directions directions = directions_of(segment.measured);
   const Structure structure = known.motion->structure;
   const HorizonErrors::Known earlier = errors_.before(target.horizon, segment.start);
   const StudentT student = earlier.students[index(structure)];
-  const double directions = settings_.stream.heading_only ? 3.0 : 1.0;  // one is measured in place of three
-  const Eigen::Matrix3d of_inputs =
+  const double as_three = 3.0 / static_cast<double>(measured.size());  // rows, whose errors are known by three
+  const RowsCovariance of_inputs =
       input_covariance(known.motion->model, known.motion->estimate.mean, driven, target.spread);
   expected.covariance += of_inputs / student.inflation;  // which does not grow them: they are of no errors so far
   nominal.covariance += of_inputs / student.inflation;
-  const double squared = directions * normalised_square(chart_error(measured, expected.pose), expected.covariance);
+  const double squared =
+      as_three * normalised_square(shorter_error(directions, measured, expected.pose), expected.covariance);
   const double nominal_squared =
-      directions * normalised_square(chart_error(measured, nominal.pose), nominal.covariance);
+      as_three * normalised_square(shorter_error(directions, measured, nominal.pose), nominal.covariance);
   errors_.of(target.horizon).learn(driven.known_at, structure, squared, nominal_squared);
   const Knowledge& after = known_.at(segment.end);
   const double used = std::max({known.until, recent.empty() ? -kNever : recent.back()->known_at, earlier.until});
@@ -292,12 +294,12 @@ void MotionLearner::judge(const TargetSegment& target) {
                         .horizon = target.horizon,
                         .start = clock_.stamp(segment.start),
                         .end = clock_.stamp(segment.end),
-                        .pose = expected.pose,
-                        .covariance = student.inflation * expected.covariance,
+                        .pose = chart_of(directions, expected.pose),
+                        .covariance = student.inflation * chart_covariance(directions, expected.covariance),
                         .student = student,
                         .nominal_nis = nominal_squared,
                         .structure = structure,
-                        .measured = measured,
+                        .measured = chart_of(directions, measured),
                         .baseline = pose_after(baseline_model(), Eigen::VectorXd(0), driven, target.baseline),
                         .in_sample = pose_after(after.motion->model, after.motion->estimate.mean, driven),
                         .learned_until = clock_.stamp(at_start ? segment.start : std::min(used, segment.start))});

@@ -41,13 +41,13 @@ MotionLeg motion_leg(const LegKnowledge& known, const DrivenSegment& driven) {
   MotionNoise white = posterior.noise;
   white.fraction = {};
   return {
-      .motion = at.predicted,
+      .motion = at.pose(),
       .spread = std::move(spread),
       .by_lasting = std::move(by_lasting),
-      .white = root.asDiagonal() * slip_covariance(at.path, white) * root.asDiagonal(),
+      .white = root.asDiagonal() * Eigen::Matrix3d(slip_covariance(at.path, white)) * root.asDiagonal(),
       .posterior = known.posterior,
       .inputs_until = std::max(driven.segment.start, driven.segment.end - posterior.model.actuator(mean).clock_offset),
-      .sensor = at.path.sensor};
+      .sensor = at.path.sensor()};
 }
 
 double leg_memory(const MotionPosterior& posterior) {

@@ -17,7 +17,7 @@ constexpr double kLongest = 4.0;            // [s] poses may be missing for a wh
 constexpr double kKnownPart = 0.9;          // of a window's time, inputs must be known
 constexpr double kChord = 0.1;              // [m] from one position to the next that tells a course
 constexpr std::size_t kMostWindows = 4000;  // a hundred minutes
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 constexpr double kDriven = 0.05;   // [m] by the inputs; slower ones may be inside a dead band
 constexpr double kTurnArm = 0.3;   // [m] at which a turn counts as distance
 constexpr double kRecent = 120.0;  // [s] of driving
@@ -54,7 +54,7 @@ bool WindowCutter::push(const NumberedRun& run, const MeasuredPose& pose, const 
     first_ = last_ = seen;
     return true;
   }
-  turn_ += within_half_turn(seen.yaw - present(last_).yaw, kTurn);
+  turn_ += within_half_turn(seen.yaw - present(last_).yaw, kWholeTurn);
   turn_degrees_ += within_half_turn(seen.yaw - present(last_).yaw, 360.0);
   last_ = seen;
   const double slot = std::floor((seen.t - frame_began_ + kSameStamp) / kLength);

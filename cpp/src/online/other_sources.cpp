@@ -103,8 +103,11 @@ void SegmentStream::emit_other(const PoseSource& source, const SegmentCut& cut, 
   }
   DrivenSegment found = driven(cut, !settings_.from_commands, known_at);
   Segment& segment = found.segment;
-  segment.sensor = source.settings.sensor;
-  segment.source = SegmentSource{.number = cut.first.source, .own_calibration = true};
+  for (auto& [sensor, z] : segment.measured) {
+    sensor.number = cut.first.source;
+    sensor.place = source.settings.sensor;
+    sensor.calibrated = true;
+  }
   Segment longer = segment;
   longer.end += kClocksApart;
   found.inputs = settings_.from_commands

@@ -14,7 +14,6 @@
 #include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/online/learner_times.hpp"
-#include "slipwise/segment/course.hpp"
 
 namespace slipwise {
 namespace {
@@ -311,11 +310,11 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                                     std::optional<double> horizon) const {
   Segment segment{.start = cut.first.t,
                   .end = cut.second.t,
-                  .measured = cut.measured(),
+                  .measured = {{.sensor = {.place = settings_.sensor,
+                                           .kind = PoseSensor{{cut.first.std_ratio, cut.second.std_ratio}}},
+                                .z = cut.measured().vector()}},
                   .gx = cut.first.gx,
                   .gy = cut.first.gy,
-                  .sensor = settings_.sensor,
-                  .pose_std_ratio = {cut.first.std_ratio, cut.second.std_ratio},
                   .heading = cut.first.yaw};
   set_course(segment, cut);
   if (settings_.heading_only) {

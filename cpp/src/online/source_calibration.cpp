@@ -12,7 +12,6 @@
 #include "slipwise/linear/tuning.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
-#include "slipwise/segment/sensor_motion.hpp"
 
 namespace slipwise {
 namespace {
@@ -26,40 +25,37 @@ SLIPWISE_TUNING(kPlaceDrift, 4e-3);  // [m, rad] the same
 
 /// A segment of a source as a measurement of how late it is and where it sits.
 struct SourceCalibration::Seen {
+  using ByState = Eigen::Matrix<double, Eigen::Dynamic, kStates, Eigen::ColMajor, kMostRows, kStates>;
   struct At {
-    Pose2 predicted;
-    Eigen::Matrix<double, 3, kStates> jacobian;
+    Rows predicted;
+    ByState jacobian;
   };
-  using Innovation = Eigen::Vector3d;
+  using Innovation = Rows;
 
   const MotionPosterior& posterior;
   const DrivenSegment& driven;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  RowsCovariance covariance = {};
 
   SegmentPath path(const Eigen::VectorXd& state) const {
     return integrate_segment(posterior.model, posterior.estimate.mean, driven.inputs, placed(driven.segment, state));
   }
   At at(const Eigen::VectorXd& state) const {
     const SegmentPath here = path(state);
-    At found{here.sensor_motion(), Eigen::Matrix<double, 3, kStates>::Zero()};
-    const auto by = [&](Eigen::Index i) -> Eigen::Vector3d {
-      const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(kStates, i);
-      return (path(state + step).sensor_motion().vector() - path(state - step).sensor_motion().vector()) /
-             (2.0 * kStep);
-    };
-    found.jacobian.col(0) = by(0);
-    if (!here.course) {
-      found.jacobian.rightCols<3>() = sensor_by_extrinsics(here.poses.back(), here.sensor);
-      return found;
-    }
-    for (Eigen::Index i = 1; i < 3; ++i) {  // an antenna has no heading
-      found.jacobian.col(i) = by(i);
+    const std::vector<slipwise::Seen> seen = here.seen();
+    At found{.predicted = stacked(seen), .jacobian = {}};
+    const Eigen::VectorXd later = kStep * Eigen::VectorXd::Unit(kStates, 0);
+    found.jacobian.resize(found.predicted.size(), kStates);
+    found.jacobian.col(0) = (path(state + later).rows() - path(state - later).rows()) / (2.0 * kStep);
+    Eigen::Index row = 0;
+    for (const slipwise::Seen& each : seen) {
+      found.jacobian.middleRows(row, each.z.size()).rightCols<3>() = each.by_place;
+      row += each.z.size();
     }
     return found;
   }
-  Innovation innovation(const At& at) const { return driven.segment.measured.vector() - at.predicted.vector(); }
-  static const Eigen::Matrix<double, 3, kStates>& jacobian(const At& at) { return at.jacobian; }
-  const Eigen::Matrix3d& noise(const At& /*at*/) const { return covariance; }
+  Innovation innovation(const At& at) const { return rows_of(driven.segment.measured) - at.predicted; }
+  static const ByState& jacobian(const At& at) { return at.jacobian; }
+  const RowsCovariance& noise(const At& /*at*/) const { return covariance; }
 };
 
 SourceCalibration::SourceCalibration(const SourceSettings& settings)
@@ -74,12 +70,10 @@ Segment SourceCalibration::placed(const Segment& segment, const Eigen::VectorXd&
   const double late = std::clamp(at[0], -kClocksApart, kClocksApart);
   moved.start -= late;
   moved.end -= late;
-  if (moved.chords) {
-    for (Chord& chord : *moved.chords) {
-      chord.from -= late;
-    }
+  for (auto& [sensor, z] : moved.measured) {
+    come_earlier(sensor, late);
+    sensor.place = Pose2::from_vector(at.tail<3>());
   }
-  moved.sensor = Pose2::from_vector(at.tail<3>());
   return moved;
 }
 
@@ -108,12 +102,12 @@ void SourceCalibration::learn(const MotionPosterior& posterior, const DrivenSegm
   linear_update(estimate_.covariance, now.at.jacobian, seen.covariance);
 }
 
-Eigen::Vector3d SourceCalibration::open(const MotionPosterior& posterior, const DrivenSegment& driven) const {
+Rows SourceCalibration::open(const MotionPosterior& posterior, const DrivenSegment& driven) const {
   const Seen seen{posterior, driven};
   const auto at = seen.at(estimate_.mean);
-  const Eigen::Matrix3d noise =
-      segment_noise(seen.path(estimate_.mean), driven.segment.measured, posterior.noise, posterior.noise_scale);
-  const Eigen::Matrix3d unknown = at.jacobian * estimate_.covariance * at.jacobian.transpose();
+  const RowsCovariance noise = segment_noise(seen.path(estimate_.mean), rows_of(driven.segment.measured),
+                                             posterior.noise, posterior.noise_scale);
+  const RowsCovariance unknown = at.jacobian * estimate_.covariance * at.jacobian.transpose();
   return unknown.diagonal().cwiseQuotient(noise.diagonal());
 }
 

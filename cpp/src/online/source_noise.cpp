@@ -41,14 +41,14 @@ Eigen::Vector3d SourceNoise::value(std::size_t noise_class, const Eigen::Vector3
   return noise_class == reference_ || !met(noise_class) ? scale : classes_[noise_class].scale.value();
 }
 
-void SourceNoise::learn(std::size_t noise_class, const ShownNoise& shown) {
+void SourceNoise::learn(std::size_t noise_class, const Directions& directions, const RowErrors& shown) {
   Class& found = classes_[noise_class];
-  const Eigen::Vector3d beside =
-      shown.squared.cwiseQuotient(shown.open + found.scale.value().cwiseProduct(shown.expected));
+  const Rows scale = found.scale.value()(directions);
+  const Rows beside = shown.squared.cwiseQuotient(shown.open + scale.cwiseProduct(shown.expected));
   if (found.steady < kSteady) {
     found.steady = beside.maxCoeff() > settings_.largest ? 0 : found.steady + 1;
   }
-  found.scale.learn_prediction(shown.squared, shown.open, shown.expected);
+  found.scale.learn_prediction(directions, shown);
 }
 
 bool SourceNoise::is_reference(const std::array<std::size_t, 2>& classes) const {

@@ -31,22 +31,30 @@ bool shifted(const MotionModel& model, const Eigen::ArrayXd& drive) {
 
 std::optional<SegmentLinearization> carried(const SegmentLinearization& at, const MotionModel& model,
                                             const Eigen::Ref<const Eigen::VectorXd>& step,
-                                            const Eigen::Matrix3d& noise) {
+                                            const RowsCovariance& noise) {
   const auto drive = step.segment(model.slip_size(), model.actuator_size()).array().abs().eval();
   const auto by_drive = at.by_parameter.middleCols(model.slip_size(), model.actuator_size());
-  const Eigen::Vector3d moved = at.by_parameter * step;
-  const double turn = std::abs(moved.z()) + (model.learned().sensor_extrinsics ? std::abs(step[step.size() - 1]) : 0.0);
-  double reach = std::hypot(at.path.sensor.x, at.path.sensor.y);
+  const Rows moved = at.by_parameter * step;
+  const Directions directions = at.path.directions();
+  double turn = model.learned().sensor_extrinsics ? std::abs(step[step.size() - 1]) : 0.0;
+  double across = 0.0;
+  for (Eigen::Index i = 0; i < moved.size(); ++i) {
+    (directions[i] == kTurn ? turn : across) += directions[i] == kTurn ? std::abs(moved[i]) : moved[i] * moved[i];
+  }
+  double reach = std::hypot(at.path.sensor().x, at.path.sensor().y);
   for (const Eigen::Vector3d& tangent : at.path.tangents) {
     reach += tangent.head<2>().norm();
   }
-  Eigen::Vector3d bent = 0.5 * by_drive.cwiseAbs() * drive.square().matrix();
-  bent.head<2>().array() += turn * (0.5 * reach * turn + moved.head<2>().norm());
-  if (!(bent.array() < kStraight * noise.diagonal().array().sqrt()).all() || shifted(model, drive)) {
+  Rows bent = 0.5 * by_drive.cwiseAbs() * drive.square().matrix();
+  for (Eigen::Index i = 0; i < moved.size(); ++i) {
+    bent[i] += directions[i] == kTurn ? 0.0 : turn * (0.5 * reach * turn + std::sqrt(across));
+  }
+  const bool seen = (directions.array() == Eigen::Index{kTurn}).any();  // without it, nothing says how far it turns
+  if (!seen || !(bent.array() < kStraight * noise.diagonal().array().sqrt()).all() || shifted(model, drive)) {
     return std::nullopt;
   }
   SegmentLinearization there = at;
-  there.predicted = {at.predicted.x + moved.x(), at.predicted.y + moved.y(), at.predicted.theta + moved.z()};
+  there.predicted += moved;
   return there;
 }
 

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "slipwise/segment/sensor_motion.hpp"
+#include "slipwise/sensor/sensor_motion.hpp"
 
 namespace slipwise {
 namespace {
 
 /// Charts of the sensor's motion at times, on straight lines between steps.
 std::vector<Eigen::Vector3d> charts_at(const SegmentPath& path, const std::vector<double>& times) {
-  const auto chart = [&path](std::size_t k) { return sensor_motion(path.poses[k], path.sensor).vector(); };
+  const auto chart = [&path](std::size_t k) { return sensor_motion(path.poses[k], path.sensor()).vector(); };
   std::vector<Eigen::Vector3d> charts;
   for (const double t : times) {
     const auto above = static_cast<std::size_t>(std::ranges::upper_bound(path.times, t) - path.times.begin());
@@ -29,18 +29,19 @@ std::vector<Eigen::Vector3d> charts_at(const SegmentPath& path, const std::vecto
 
 }  // namespace
 
-Eigen::Matrix3d input_covariance(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                 const DrivenSegment& driven, const InputSpread& spread) {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+RowsCovariance input_covariance(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                const DrivenSegment& driven, const InputSpread& spread) {
+  const Directions directions = directions_of(driven.segment.measured);
+  RowsCovariance sum = RowsCovariance::Zero(directions.size(), directions.size());
   if (spread.deviated.empty()) {
     return sum;
   }
   const auto end = [&](const InputHistory& inputs) {
-    return integrate_segment(model, parameters, inputs, driven.segment).sensor_motion().vector();
+    return integrate_segment(model, parameters, inputs, driven.segment).rows();
   };
-  const Eigen::Vector3d expected = end(driven.inputs);
+  const Rows expected = end(driven.inputs);
   for (const InputHistory& inputs : spread.deviated) {
-    const Eigen::Vector3d off = chart_error(end(inputs), expected) / spread.step;
+    const Rows off = shorter_error(directions, end(inputs), expected) / spread.step;
     sum += off * off.transpose();
   }
   return sum;

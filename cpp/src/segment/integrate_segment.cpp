@@ -8,12 +8,10 @@
 #include <span>
 #include <utility>
 
-#include "slipwise/linear/present.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/segment/ground_step.hpp"
 #include "slipwise/segment/growing_path.hpp"
 #include "slipwise/segment/path_step.hpp"
-#include "slipwise/segment/sensor_motion.hpp"
 
 namespace slipwise {
 namespace {
@@ -24,41 +22,34 @@ constexpr Eigen::Index kClockOffset = 4;  // its place among the parameters of a
 using ActuatorColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kActuatorParameters>;
 using LearnedColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kActuatorParameters>;
 
+constexpr std::size_t kAtStart = 0;
+
 ActuatorSpan window_of(const Segment& segment) {
-  return {.start = path_start(segment), .end = segment.end, .initial = segment.initial, .known = segment.known};
+  const auto [start, end] = path_span(segment);
+  return {.start = start, .end = end, .initial = segment.initial, .known = segment.known};
 }
 
-bool calibrated_apart(const Segment& segment) { return segment.source && segment.source->own_calibration; }
+bool calibrated(const Segment& segment) { return segment.measured.front().sensor.calibrated; }
 
 ActuatorModel actuator_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                           const Segment& segment) {
   ActuatorModel actuator = model.actuator(parameters);
-  if (calibrated_apart(segment)) {
+  if (calibrated(segment)) {
     actuator.clock_offset = 0.0;
   }
   return actuator;
 }
 
-/// A gyro says nothing of where the robot is, and a further source nothing of the clock and the sensor of the first.
-void clear_unmeasured(const MotionModel& model, const Segment& segment, bool all,
-                      Eigen::Matrix<double, 3, Eigen::Dynamic>& by_parameter) {
-  if (segment.source && segment.source->heading_only && segment.gyro_std) {
-    by_parameter.topRows<2>().setZero();
+/// What was measured, by sensors where a model that learns the place of the first says.
+std::vector<Measured> placed(const Segment& segment, const MotionModel& model,
+                             const Eigen::Ref<const Eigen::VectorXd>& parameters) {
+  std::vector<Measured> measured = segment.measured;
+  for (auto& [sensor, z] : measured) {
+    if (model.learned().sensor_extrinsics && !sensor.calibrated) {
+      sensor.place = model.sensor_extrinsics(parameters);
+    }
   }
-  if (!all || !calibrated_apart(segment)) {
-    return;
-  }
-  by_parameter.rightCols(model.extrinsics_size()).setZero();
-  const auto& places = model.actuator_places();
-  const auto clock = std::ranges::find(places, kClockOffset);
-  if (clock != places.end()) {
-    by_parameter.col(model.slip_size() + (clock - places.begin())).setZero();
-  }
-}
-
-Pose2 sensor_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters, const Segment& segment) {
-  return model.learned().sensor_extrinsics && !calibrated_apart(segment) ? model.sensor_extrinsics(parameters)
-                                                                         : segment.sensor;
+  return measured;
 }
 
 /// What pulls the robot amid a step that begins at `theta`, and where slip is `by_heading`, its heading there.
@@ -67,6 +58,15 @@ BodyGravity under(const Segment& segment, const ActuatorStep& step, double theta
   const BodyGravity pull = ground != nullptr ? *ground : BodyGravity{.gx = segment.gx, .gy = segment.gy};
   return by_heading ? headed(pull, segment.heading + theta + 0.5 * step.turn) : pull;
 }
+
+/// What derivatives are by: the slip parameters, and the others too where `all`.
+struct LearnedAt {
+  const MotionModel& model;
+  const ActuatorModel& actuator;
+  bool all;
+
+  Eigen::Index size() const { return all ? model.size() : model.slip_size(); }
+};
 
 /// Sums of derivations/model.md: the steps' derivatives carried back to the path's start, one column per
 /// parameter.
@@ -117,31 +117,73 @@ struct SensitivitySums {
     return amid;
   }
 
-  /// Phi(n, 0), carried from the robot to the sensor.
-  static Eigen::Matrix3d at_sensor(const Pose2& end, const Pose2& sensor) {
-    return sensor_by_robot(end, sensor) * transition(Pose2{}, end);
-  }
-
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_slip(const Pose2& end, const Pose2& sensor) const {
-    return at_sensor(end, sensor) * slip;
-  }
-
-  /// J = Phi(n, 0) times the sums.
-  Eigen::Matrix<double, 3, Eigen::Dynamic> at(const Pose2& end, const Pose2& sensor, const MotionModel& model,
-                                              const ActuatorModel& at) const {
-    const Eigen::Matrix3d phi = at_sensor(end, sensor);
-    Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, model.size());
-    jacobian.leftCols(model.slip_size()) = phi * slip;
-    if (model.actuator_size() > 0) {
-      jacobian.middleCols(model.slip_size(), model.actuator_size()) =
-          phi * actuator * model.actuator_scales(at).asDiagonal();
+  /// Adds to the derivative of rows what comes from one of the poses that make them: Phi(n, 0) times the sums.
+  void add_to(Eigen::Block<RowsJacobian> by_parameter, const RowsByPose& by_pose, const Pose2& pose,
+              const LearnedAt& at) const {
+    const RowsByPose phi = by_pose * transition(Pose2{}, pose);
+    by_parameter.leftCols(at.model.slip_size()) += phi * slip;
+    if (at.all && at.model.actuator_size() > 0) {
+      by_parameter.middleCols(at.model.slip_size(), at.model.actuator_size()) +=
+          phi * actuator * at.model.actuator_scales(at.actuator).asDiagonal();
     }
-    if (model.learned().sensor_extrinsics) {
-      jacobian.rightCols<kExtrinsicsParameters>() = sensor_by_extrinsics(end, sensor);
-    }
-    return jacobian;
   }
 };
+
+/// The sums at the poses that sensors look at.
+class SumsThen {
+ public:
+  explicit SumsThen(const std::vector<Sight>& sights) {
+    for (const Sight& sight : sights) {
+      places_.insert(places_.end(), sight.at.begin(), sight.at.begin() + sight.stamps.size());
+    }
+  }
+
+  void see(std::size_t place, const SensitivitySums& sums) {
+    if (std::ranges::find(places_, place) != places_.end()) {
+      sums_.emplace_back(place, sums);
+    }
+  }
+  const SensitivitySums& at(std::size_t place) const {
+    return std::ranges::find(sums_, place, &std::pair<std::size_t, SensitivitySums>::first)->second;
+  }
+
+ private:
+  std::vector<std::size_t> places_;
+  std::vector<std::pair<std::size_t, SensitivitySums>> sums_;
+};
+
+/// The derivative of the rows of all sensors. One that is calibrated apart says nothing of the clock and of the place
+/// that the model learns.
+RowsJacobian rows_by_parameter(const SegmentPath& path, const std::vector<Seen>& seen, const SumsThen& sums,
+                               const LearnedAt& at) {
+  RowsJacobian by_parameter = RowsJacobian::Zero(path.directions().size(), at.size());
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const Sight& sight = path.sights[k];
+    Eigen::Block<RowsJacobian> rows = by_parameter.block(row, 0, seen[k].z.size(), by_parameter.cols());
+    row += rows.rows();
+    for (std::size_t i = 0; std::cmp_less(i, sight.stamps.size()); ++i) {
+      if (const std::size_t place = sight.at[i]; place != kAtStart) {
+        sums.at(place).add_to(rows, seen[k].by_pose[i], path.poses[place], at);
+      }
+    }
+    const bool apart = path.measured[k].sensor.calibrated;
+    if (at.all && !apart && at.model.learned().sensor_extrinsics) {
+      rows.rightCols<kExtrinsicsParameters>() = seen[k].by_place;
+    }
+    const auto& places = at.model.actuator_places();
+    if (const auto clock = std::ranges::find(places, kClockOffset); at.all && apart && clock != places.end()) {
+      rows.col(at.model.slip_size() + (clock - places.begin())).setZero();
+    }
+  }
+  return by_parameter;
+}
+
+SegmentLinearization linearized_path(SegmentPath path, const SumsThen& sums, const LearnedAt& at) {
+  const std::vector<Seen> seen = path.seen();
+  RowsJacobian by_parameter = rows_by_parameter(path, seen, sums, at);
+  return {.path = std::move(path), .predicted = stacked(seen), .by_parameter = std::move(by_parameter)};
+}
 
 /// What a step is driven on, and how that follows from the parameters; nothing on level ground.
 struct GroundUnder {
@@ -196,34 +238,12 @@ void add_step(SensitivitySums& sums, const DrivenStep& driven, const std::option
   }
 }
 
-/// Cuts steps where the ground `changes` on the way, and at the points of the segment's course; returns where these
-/// are, if it has one.
-std::optional<CoursePlaces> cut_steps(ActuatorSteps& drive, const Segment& segment, bool changes) {
+/// Cuts steps where the ground `changes` on the way, and at the moments of the sensors; returns what these look at.
+std::vector<Sight> cut_steps(ActuatorSteps& drive, const Segment& segment, bool changes) {
   if (changes) {
     cut_for_ground(drive);
   }
-  return segment.chords ? std::optional(cut_for_course(drive, segment)) : std::nullopt;
-}
-
-/// The derivative of a course by those of the sensor's poses at its points; those at the path's start have none.
-Eigen::Matrix<double, 3, Eigen::Dynamic> of_course(
-    const SegmentPath& path, const std::array<Eigen::Matrix<double, 3, Eigen::Dynamic>, kCoursePoints>& at_points,
-    Eigen::Index parameters) {
-  const CoursePlaces& course = present(path.course);
-  const ByPosition by_position = course_by_position(path.course_positions(), course);
-  Eigen::Matrix<double, 3, Eigen::Dynamic> sum = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, parameters);
-  for (std::size_t i = 0; i < kCoursePoints; ++i) {
-    if (course.at[i] > 0) {
-      sum += by_position[i] * at_points[i].topRows<2>();
-    }
-  }
-  if (course.gyro_std) {
-    sum.row(2) += at_points[kEnd].row(2);
-    if (course.at[kStart] > 0) {
-      sum.row(2) -= at_points[kStart].row(2);
-    }
-  }
-  return sum;
+  return cut_for_sights(drive, segment);
 }
 
 /// By the slip parameters, and by the others too where `kAll`. After each step but the last, `see` is handed the path,
@@ -238,14 +258,10 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   const auto alpha = parameters.head(model.slip_size());
   ActuatorSteps drive = by_actuator ? linearize_actuator_steps(inputs, actuator, window_of(segment))
                                     : actuator_steps(inputs, actuator, window_of(segment));
-  const std::optional<CoursePlaces> course = cut_steps(drive, segment, segment.ground || by_heading);
-  const Pose2 sensor = sensor_of(model, parameters, segment);
-  std::array<Eigen::Matrix<double, 3, Eigen::Dynamic>, kCoursePoints> at_points;
+  std::vector<Sight> sights = cut_steps(drive, segment, segment.ground || by_heading);
   GrowingPath path(segment, drive.steps.size());
   SensitivitySums sums(model);
-  const auto at_sensor = [&] {
-    return kAll ? sums.at(path.pose(), sensor, model, actuator) : sums.by_slip(path.pose(), sensor);
-  };
+  SumsThen then(sights);
   std::vector<double> features(model.basis().size());
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const ActuatorStep& step = drive.steps[k];
@@ -263,54 +279,20 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
              by_actuator ? std::optional<LearnedColumns>(drive.jacobians[k](Eigen::all, model.actuator_places()))
                          : std::nullopt,
              by_tangent);
-    for (std::size_t i = 0; course && i < kCoursePoints; ++i) {
-      if (course->at[i] == k + 1) {
-        at_points[i] = at_sensor();
-      }
-    }
+    then.see(k + 1, sums);
     if (k + 1 < drive.steps.size()) {
       see(path, std::span(drive.steps).first(k + 1), sums);
     }
   }
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_parameter = at_sensor();
-  SegmentPath finished = std::move(path).finish(std::move(drive.steps), sensor, course);
-  if (course) {
-    by_parameter = of_course(finished, at_points, by_parameter.cols());
-  }
-  clear_unmeasured(model, segment, kAll, by_parameter);
-  const Pose2 predicted = finished.sensor_motion();
-  return {std::move(finished), predicted, std::move(by_parameter)};
+  return linearized_path(
+      std::move(path).finish(std::move(drive.steps), placed(segment, model, parameters), std::move(sights)), then,
+      {model, actuator, kAll});
 }
 
 void see_nothing(const GrowingPath& /*path*/, std::span<const ActuatorStep> /*steps*/,
                  const SensitivitySums& /*sums*/) {}
 
 }  // namespace
-
-CoursePositions SegmentPath::course_positions() const {
-  CoursePositions points;
-  for (std::size_t i = 0; i < kCoursePoints; ++i) {
-    const Pose2 seen = slipwise::sensor_motion(poses[present(course).at[i]], sensor);
-    points[i] = {seen.x, seen.y};
-  }
-  return points;
-}
-
-double SegmentPath::course_turn() const {
-  return poses[present(course).at[kEnd]].theta - poses[present(course).at[kStart]].theta;
-}
-
-Pose2 SegmentPath::sensor_motion() const {
-  if (heading_std) {
-    return {0.0, 0.0, poses.back().theta};
-  }
-  return course ? course_motion(course_positions(), *course, course_turn())
-                : slipwise::sensor_motion(poses.back(), sensor);
-}
-
-Pose2 SegmentPath::robot_motion(const Pose2& measured) const {
-  return compose(compose(sensor, measured), inverse(sensor));
-}
 
 // NOLINTNEXTLINE(readability-function-size): a model, what is driven, how it is integrated and what lies ahead.
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
@@ -322,7 +304,7 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
   const bool by_heading = model.basis().by_heading();
   double travelled = 0.0;
   ActuatorSteps drive = actuator_steps(inputs, actuator_of(model, parameters, segment), window_of(segment));
-  const std::optional<CoursePlaces> course = cut_steps(drive, segment, segment.ground || by_heading || !ahead.empty());
+  std::vector<Sight> sights = cut_steps(drive, segment, segment.ground || by_heading || !ahead.empty());
   GrowingPath path(segment, drive.steps.size());
   std::vector<double> features(model.basis().size());
   for (const ActuatorStep& step : drive.steps) {
@@ -343,7 +325,7 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
                                              : rk4_displacement(tangent);
     path.append(step.duration, tangent, displacement, arc);
   }
-  return std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment), course);
+  return std::move(path).finish(std::move(drive.steps), placed(segment, model, parameters), std::move(sights));
 }
 
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
@@ -361,7 +343,6 @@ std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
                                                        const InputHistory& inputs, const Segment& segment,
                                                        std::size_t parts) {
   const ActuatorModel actuator = actuator_of(model, parameters, segment);
-  const Pose2 sensor = sensor_of(model, parameters, segment);
   const double part = (segment.end - segment.start) / static_cast<double>(parts);
   double next = segment.start + part;
   std::vector<SegmentLinearization> found;
@@ -372,10 +353,12 @@ std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
     while (!later(next, path.time())) {
       next += part;
     }
-    SegmentPath so_far = GrowingPath(path).finish({steps.begin(), steps.end()}, sensor);
-    const Pose2 predicted = so_far.sensor_motion();
-    auto by_parameter = sums.at(so_far.poses.back(), sensor, model, actuator);
-    found.push_back({std::move(so_far), predicted, std::move(by_parameter)});
+    std::vector<Sight> sights = sights_until(steps.size(), segment);
+    SumsThen then(sights);
+    then.see(steps.size(), sums);
+    SegmentPath so_far =
+        GrowingPath(path).finish({steps.begin(), steps.end()}, placed(segment, model, parameters), std::move(sights));
+    found.push_back(linearized_path(std::move(so_far), then, {model, actuator, true}));
   };
   auto whole = linearized<true>(model, parameters, inputs, segment, see);
   found.push_back(std::move(whole));

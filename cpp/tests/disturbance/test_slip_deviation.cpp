@@ -24,7 +24,7 @@ DisturbedTerms terms() {
 ObservedSlip observed(double start, double innovation, double std) {
   ObservedSlip result{.start = start,
                       .end = start + 1e-6,
-                      .innovation = {innovation, 0.0, 0.0},
+                      .innovation = Eigen::Vector3d(innovation, 0.0, 0.0),
                       .noise = std * std * Eigen::Matrix3d::Identity(),
                       .by_deviation = ObservedSlip::ByDeviation::Zero(3, terms().size())};
   result.by_deviation(0, 0) = 1.0;

@@ -39,7 +39,7 @@ std::vector<Segment> drive(const MotionModel& model, const InputHistory& inputs,
     Segment segment{.start = 1.0 + i, .end = 2.0 + i};
     const Pose2 truth = integrate_segment(model, slip_at(i), inputs, segment).poses.back();
     const Eigen::Vector3d noise = tests::normal3(random).cwiseProduct(Eigen::Vector3d(0.028, 0.028, 0.028));
-    segment.measured = Pose2::from_vector(truth.vector() + noise);
+    segment.measured = measured_pose(Pose2::from_vector(truth.vector() + noise));
     segments.push_back(segment);
   }
   return segments;
@@ -83,9 +83,9 @@ Followed follow(const MotionPosterior& posterior, const InputHistory& inputs, co
     if (2 * i >= std::ssize(segments)) {
       const ExpectedPose with = expected(found.slip, posterior, inputs, before(segments, i), next);
       const ExpectedPose plain = expected(found.slip, posterior, inputs, {}, next);
-      const Eigen::Vector3d error = next.measured.vector() - with.pose;
+      const Eigen::Vector3d error = rows_of(next.measured) - with.pose;
       found.error += std::pow(error.z(), 2);
-      found.plain_error += std::pow(next.measured.theta - plain.pose.z(), 2);
+      found.plain_error += std::pow(rows_of(next.measured)[2] - plain.pose[2], 2);
       found.nis += error.dot(Cholesky(with.covariance).solve(error)) * 2.0 / static_cast<double>(segments.size());
     }
     learn(found.slip, posterior, inputs, segments, i);
@@ -161,7 +161,7 @@ TEST_CASE("a model without linear terms is predicted as it is") {
   DisturbanceFilter slip(DisturbanceSettings{});
   learn(slip, posterior, s.inputs, segments, 12);
   const auto at = linearize_segment(plain, Eigen::VectorXd(0), s.inputs, segments.back());
-  CHECK(expected(slip, posterior, s.inputs, before(segments, 12), segments.back()).pose == at.predicted.vector());
+  CHECK(expected(slip, posterior, s.inputs, before(segments, 12), segments.back()).pose == at.predicted);
 }
 
 TEST_CASE(
@@ -186,7 +186,7 @@ TEST_CASE(
   const Eigen::Matrix3d stated = prediction_covariance(at, over, posterior.noise, posterior.noise_scale);
   const ExpectedPose nominal = expected(read, posterior, s.inputs, {}, segments.back());
   CHECK((nominal.covariance - stated).norm() < 1e-12 * stated.norm());
-  CHECK(nominal.pose == at.predicted.vector());
+  CHECK(nominal.pose == at.predicted);
   CHECK_THROWS_AS(read.predict(posterior, SlipNow{}, {.inputs = s.inputs, .segment = segments.back()}),
                   std::invalid_argument);
 }
@@ -206,7 +206,7 @@ TEST_CASE("the deviation that is expected is the one that moves a prediction") {
   const ExpectedPose pose = slip.predict_at(posterior, now, at, last);
   const Eigen::MatrixXd h = at.by_parameter(Eigen::all, found.places);
   CHECK(found.mean.norm() > 1e-3);
-  CHECK((at.predicted.vector() + h * found.mean - pose.pose).norm() < 1e-12);
+  CHECK((at.predicted + h * found.mean - pose.pose).norm() < 1e-12);
   const Eigen::Matrix3d without =
       prediction_covariance(at, posterior.estimate.covariance, posterior.noise, posterior.noise_scale);
   CHECK((without + h * found.covariance * h.transpose() - pose.covariance).norm() < 1e-12);

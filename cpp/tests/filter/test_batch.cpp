@@ -39,7 +39,7 @@ struct LinearDrive {
   explicit LinearDrive(const Eigen::Matrix3d& shared) {
     for (int i = 1; i < 18; ++i) {
       Segment segment{.start = i + 0.3, .end = i + 1.3};
-      segment.measured = {0.55 + 0.1 * i + 0.03 * std::sin(3.0 * i), 0.02 * i, 0.001};
+      segment.measured = measured_pose({0.55 + 0.1 * i + 0.03 * std::sin(3.0 * i), 0.02 * i, 0.001});
       data.push_back({inputs, segment, 0.01 * Eigen::Matrix3d::Identity(), shared});
     }
     data.front().shared.setZero();
@@ -100,7 +100,7 @@ TEST_CASE("errors that neighbours fraction are weighted as generalised least squ
     const BatchDatum& datum = drive.data[static_cast<std::size_t>(i)];
     const auto at = linearize_segment(drive.model, prior.mean, drive.inputs, datum.segment);
     by_parameter.middleRows<3>(3 * i) = at.by_parameter;
-    residual.segment<3>(3 * i) = datum.segment.measured.vector() - at.predicted.vector();
+    residual.segment<3>(3 * i) = rows_of(datum.segment.measured) - at.predicted;
     noise.block<3, 3>(3 * i, 3 * i) = datum.noise;
     if (i > 0) {
       noise.block<3, 3>(3 * i, 3 * i - 3) = shared;
@@ -138,7 +138,7 @@ TEST_CASE("one pose jump hardly moves a robust fit") {
   const MotionModel model(named_basis("edd-2"), {});
   const Eigen::Vector2d truth(-0.1, -0.2);
   auto drive = tests::simulate_drive(model, truth, {.seed = 63, .windows = 40, .noise = kNoise});
-  drive.segments[7].measured.x += 3.0;
+  drive.segments[7].measured.front().z[0] += 3.0;
   const auto data = data_of(model, drive);
   const double robust = (batch_fit(model, wide_prior(model), data).estimate.mean - truth).norm();
   const double trusting = (batch_fit(model, wide_prior(model), data, {.huber = 1e9}).estimate.mean - truth).norm();

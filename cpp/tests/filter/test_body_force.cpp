@@ -128,7 +128,7 @@ Outcome learned(const Drive& drive) {
     last = drive.correlation * last + std::sqrt(1.0 - drive.correlation * drive.correlation) * draw(3);
     pose = compose(pose, drive.correlation > 0.0 ? pushed(path, last) : tests::disturbed_motion(path, kNoise, random));
     const Pose2 seen = tests::measured_pose(pose, kNoise, random);
-    segment.measured = between(observed, seen);
+    segment.measured = measured_pose(between(observed, seen));
     observed = seen;
     filter.learn(inputs, segment, kSpeeds);
   }

@@ -92,7 +92,7 @@ TEST_CASE("on a linear problem the filter is the Kalman filter") {
   const InputHistory inputs = straight_inputs();
   Estimate prior = wide_prior(model);
   prior.covariance(0, 1) = prior.covariance(1, 0) = 0.01;
-  const Segment segment{.start = 1.0, .end = 3.0, .measured = {1.9, 0.1, 0.02}};
+  const Segment segment{.start = 1.0, .end = 3.0, .measured = measured_pose({1.9, 0.1, 0.02})};
   Eigen::Matrix3d noise = Eigen::Vector3d(0.04, 0.09, 0.01).asDiagonal();
   noise(0, 2) = noise(2, 0) = 0.005;
   const IekfUpdate update = iekf_update(model, prior, inputs, segment, noise);
@@ -137,7 +137,7 @@ TEST_CASE("covariances stay symmetric, positive definite, and never grow in any 
 TEST_CASE("a residual beyond the gate leaves the estimate as it was and says so") {
   const MotionModel model(named_basis("edd-2"), {});
   const Estimate prior = wide_prior(model, 0.01);
-  const Segment jump{.start = 1.0, .end = 2.0, .measured = {1.0, 5.0, 0.0}};
+  const Segment jump{.start = 1.0, .end = 2.0, .measured = measured_pose({1.0, 5.0, 0.0})};
   const IekfUpdate update = iekf_update(model, prior, straight_inputs(), jump, 0.01 * Eigen::Matrix3d::Identity());
   CHECK(update.nis == doctest::Approx(2500.0));
   CHECK(update.status == Status::Rejected);
@@ -150,7 +150,7 @@ TEST_CASE("a residual beyond the gate leaves the estimate as it was and says so"
 TEST_CASE("a residual between Huber's threshold and the gate counts for less") {
   const MotionModel model(named_basis("edd-2"), {});
   const Estimate prior = wide_prior(model, 0.1);
-  const Segment odd{.start = 1.0, .end = 2.0, .measured = {1.0 + 5.0 * std::sqrt(0.02), 0.0, 0.0}};
+  const Segment odd{.start = 1.0, .end = 2.0, .measured = measured_pose({1.0 + 5.0 * std::sqrt(0.02), 0.0, 0.0})};
   const Eigen::Matrix3d noise = 0.01 * Eigen::Matrix3d::Identity();
   const IekfUpdate update = iekf_update(model, prior, straight_inputs(), odd, noise);
   const IekfUpdate trusting = iekf_update(model, prior, straight_inputs(), odd, noise, {.huber = 100.0});
@@ -168,14 +168,14 @@ TEST_CASE("step halving keeps a far start from diverging") {
   const InputHistory inputs(t, v, vy, omega);
   const Eigen::Vector2d truth(0.0, 0.9);
   Segment segment{.start = 0.0, .end = 3.0};
-  segment.measured = integrate_segment(model, truth, inputs, segment).poses.back();
+  segment.measured = measured_pose(integrate_segment(model, truth, inputs, segment).poses.back());
   const Estimate prior = wide_prior(model, 1.0);
   const auto cost = [&](const IekfSettings& settings) {
     const Estimate estimate = iekf_update(model, prior, inputs, segment, kExact, settings).estimate;
     const Pose2 reached = integrate_segment(model, estimate.mean, inputs, segment).poses.back();
-    return (reached.vector() - segment.measured.vector()).norm();
+    return (reached.vector() - rows_of(segment.measured)).norm();
   };
-  const double start = segment.measured.vector().norm();
+  const double start = rows_of(segment.measured).norm();
   for (const int iterations : {1, 2, 5, 10}) {
     CHECK(cost({.iterations = iterations, .huber = 1e9, .gate = 1e18}) < start);
   }
@@ -208,8 +208,9 @@ TEST_CASE("sizes that do not fit and numbers that are not finite are refused wit
                        doctest::Contains("one row per parameter, 2; got 3 x 3"), std::invalid_argument);
   CHECK_THROWS_WITH_AS(update(good, {.start = 2.0, .end = 2.0}, kExact), doctest::Contains("end after it starts"),
                        std::invalid_argument);
-  CHECK_THROWS_WITH_AS(update(good, {.start = 1.0, .end = 2.0, .measured = {std::nan(""), 0.0, 0.0}}, kExact),
-                       doctest::Contains("finite measurements"), std::invalid_argument);
+  CHECK_THROWS_WITH_AS(
+      update(good, {.start = 1.0, .end = 2.0, .measured = measured_pose({std::nan(""), 0.0, 0.0})}, kExact),
+      doctest::Contains("finite measurements"), std::invalid_argument);
   CHECK_THROWS_WITH_AS(update(good, segment, Eigen::Matrix3d::Zero()), doctest::Contains("positive definite"),
                        std::invalid_argument);
 }

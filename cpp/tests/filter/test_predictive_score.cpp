@@ -32,7 +32,8 @@ Scores mean_scores(const Eigen::Vector2d& slip, double noise_std) {
   for (int i = 0; i < kSettled + kSegments; ++i) {
     Segment segment{.start = 1.0 + i, .end = 2.0 + i};
     const Pose2 truth = integrate_segment(model, Eigen::Vector2d(-0.1, -0.3), inputs, segment).poses.back();
-    segment.measured = {truth.x + normal(random), truth.y + normal(random), truth.theta + normal(random)};
+    segment.measured =
+        measured_pose({truth.x + normal(random), truth.y + normal(random), truth.theta + normal(random)});
     const Estimate estimate{slip, Eigen::Matrix2d::Zero()};
     const ScoredSegment scored = score.score(model, estimate, inputs, segment);
     mean.nis += i < kSettled ? 0.0 : scored.nis / kSegments;

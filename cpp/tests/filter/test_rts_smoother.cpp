@@ -39,7 +39,7 @@ std::vector<BatchDatum> drifting_data(const InputHistory& inputs, std::size_t co
     truth.push_back(0.1 + 0.2 * std::sin(0.1 * static_cast<double>(i)));
     const double observed = 2.0 * (1.0 + truth.back()) + 0.1 * normal(random);
     data.push_back({inputs,
-                    {.start = start, .end = start + 2.0, .measured = {observed, 0.0, 0.0}},
+                    {.start = start, .end = start + 2.0, .measured = measured_pose({observed, 0.0, 0.0})},
                     0.01 * Eigen::Matrix3d::Identity()});
   }
   return data;
@@ -51,7 +51,7 @@ Estimate batch(const std::vector<BatchDatum>& data, double a, double added) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd vector = Eigen::VectorXd::Zero(n);  // of p - p0
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double z = data[static_cast<std::size_t>(i)].segment.measured.x - 2.0 * (1.0 + 0.1);
+    const double z = data[static_cast<std::size_t>(i)].segment.measured.front().z[0] - 2.0 * (1.0 + 0.1);
     information(i, i) += 4.0 / 0.01;
     vector[i] += 2.0 * z / 0.01;
     if (i == 0) {

@@ -48,9 +48,11 @@ Scatter scatter(const ErrorModel& errors) {
     ScoreCovariance scores(model);
     for (int i = 0; i < kSegments; ++i) {
       SegmentLinearization at;
+      at.predicted.setZero(3);
       at.by_parameter = Eigen::MatrixXd::Zero(3, 1);
       at.by_parameter(2, 0) = 1.0;
-      const Segment segment{.start = double(i), .end = i + 1.0, .measured = {0.0, 0.0, error[i] - error.mean()}};
+      const Segment segment{
+          .start = double(i), .end = i + 1.0, .measured = measured_pose({0.0, 0.0, error[i] - error.mean()})};
       scores.add(at, covariance, segment, noise);
     }
     const double factor = scores.std_factors(Eigen::MatrixXd::Constant(1, 1, 1e4), covariance)[0];
@@ -81,6 +83,7 @@ TEST_CASE("errors that are correlated in time teach less, and the covariance say
 
 SegmentLinearization yaw_segment(double jacobian) {
   SegmentLinearization at;
+  at.predicted.setZero(3);
   at.by_parameter = Eigen::MatrixXd::Zero(3, 2);
   at.by_parameter(2, 1) = jacobian;
   return at;
@@ -90,7 +93,8 @@ TEST_CASE("channels are judged apart, and a channel without scores keeps its cov
   ScoreCovariance scores(MotionModel(named_basis("edd-2"), {}));
   const Eigen::Matrix2d covariance = Eigen::Vector2d(1.0, 1e-3).asDiagonal();
   for (int i = 0; i < 100; ++i) {
-    const Segment segment{.start = double(i), .end = i + 1.0, .measured = {0.0, 0.0, i < 50 ? 0.2 : -0.2}};
+    const Segment segment{
+        .start = double(i), .end = i + 1.0, .measured = measured_pose({0.0, 0.0, i < 50 ? 0.2 : -0.2})};
     scores.add(yaw_segment(1.0), covariance, segment, 0.01 * Eigen::Matrix3d::Identity());
   }
   const Eigen::VectorXd factors = scores.std_factors(Eigen::Matrix2d::Identity(), covariance);
@@ -102,7 +106,7 @@ TEST_CASE("a parked robot says nothing of the scores, and a restart forgets them
   const MotionModel model(named_basis("edd-2"), {});
   ScoreCovariance scores(model);
   const Eigen::Matrix2d covariance = 0.01 * Eigen::Matrix2d::Identity();
-  const Segment segment{.start = 0.0, .end = 1.0, .measured = {0.0, 0.0, 1.0}};
+  const Segment segment{.start = 0.0, .end = 1.0, .measured = measured_pose({0.0, 0.0, 1.0})};
   scores.add(yaw_segment(0.0), covariance, segment, 0.01 * Eigen::Matrix3d::Identity());
   CHECK(scores.std_factors(Eigen::Matrix2d::Identity(), covariance) == Eigen::Vector2d::Ones());
   scores.add(yaw_segment(1.0), covariance, segment, 0.01 * Eigen::Matrix3d::Identity());
@@ -117,9 +121,9 @@ TEST_CASE("what was learned before time went back is another run, and not correl
   ScoreCovariance two_runs(model);
   const Eigen::Matrix2d covariance = 0.01 * Eigen::Matrix2d::Identity();
   for (int i = 0; i < 40; ++i) {
-    const Segment segment{.start = double(i), .end = i + 1.0, .measured = {0.0, 0.0, 0.2}};
+    const Segment segment{.start = double(i), .end = i + 1.0, .measured = measured_pose({0.0, 0.0, 0.2})};
     one_run.add(yaw_segment(1.0), covariance, segment, 0.01 * Eigen::Matrix3d::Identity());
-    const Segment back{.start = -double(i), .end = 1.0 - i, .measured = {0.0, 0.0, 0.2}};
+    const Segment back{.start = -double(i), .end = 1.0 - i, .measured = measured_pose({0.0, 0.0, 0.2})};
     two_runs.add(yaw_segment(1.0), covariance, back, 0.01 * Eigen::Matrix3d::Identity());
   }
   const Eigen::Matrix2d prior = Eigen::Matrix2d::Identity();

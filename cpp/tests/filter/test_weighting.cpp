@@ -39,9 +39,9 @@ TEST_CASE(
 }
 
 TEST_CASE("candidates are judged by their errors under one covariance, whatever they say of themselves") {
-  const std::array<Eigen::Vector3d, 2> errors{Eigen::Vector3d(0.1, 0.0, 0.0), Eigen::Vector3d(0.2, 0.0, 0.0)};
+  const std::array<Rows, 2> errors{Eigen::Vector3d(0.1, 0.0, 0.0), Eigen::Vector3d(0.2, 0.0, 0.0)};
   const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
-  const std::array<Eigen::Matrix3d, 2> sizes{100.0 * unit, 0.01 * unit};
+  const std::array<RowsCovariance, 2> sizes{100.0 * unit, 0.01 * unit};
   const Eigen::VectorXd scores = common_log_scores(Eigen::Vector2d(0.5, 0.5), errors, sizes);
   CHECK(scores[0] > scores[1]);
   const Eigen::Matrix3d mean = 50.005 * unit;
@@ -60,8 +60,8 @@ TEST_CASE("what does not fit together is refused") {
   CHECK_THROWS_AS(updated_weights(two, Eigen::Vector3d::Zero(), two, {}, 0), std::invalid_argument);
   CHECK_THROWS_AS(updated_weights(two, two, Eigen::Vector3d::Zero(), {}, 0), std::invalid_argument);
   CHECK_THROWS_AS(updated_weights({}, {}, {}, {}, 0), std::invalid_argument);
-  const std::array<Eigen::Vector3d, 1> one{};
-  const std::array<Eigen::Matrix3d, 2> sizes{};
+  const std::array<Rows, 1> one{};
+  const std::array<RowsCovariance, 2> sizes{};
   CHECK_THROWS_AS(common_log_scores(two, one, sizes), std::invalid_argument);
 }
 

@@ -16,6 +16,7 @@ using ByChange = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
 const ChangeKinds kKinds{{0}, {1}, {0, 1}};
 const Eigen::Matrix3d kUnit = Eigen::Matrix3d::Identity();
+const Directions kChart = Eigen::Matrix<Eigen::Index, 3, 1>(kAlong, kAcross, kTurn);
 
 /// One change that turns the heading by `size` sigmas, another hand every other segment.
 ByChange turns(int segment, double size) {
@@ -48,12 +49,12 @@ TEST_CASE("a change that residuals agree on is found within three segments") {
   std::mt19937_64 random(151);
   ChangeDetector detector{ChangeSettings{}, kKinds};
   for (int i = 0; i < 60; ++i) {
-    CHECK_FALSE(detector.see(noise(random), kUnit, turns(i, 4.0)).alarm);
+    CHECK_FALSE(detector.see(kChart, noise(random), kUnit, turns(i, 4.0)).alarm);
   }
   bool found = false;
   for (int i = 0; i < 3 && !found; ++i) {
     const ByChange by_change = turns(i, 4.0);
-    const ChangeTest test = detector.see(by_change.col(1) * 1.5 + noise(random), kUnit, by_change);
+    const ChangeTest test = detector.see(kChart, by_change.col(1) * 1.5 + noise(random), kUnit, by_change);
     found = test.alarm;
     CHECK(test.segments <= i + 2);
   }
@@ -68,12 +69,12 @@ int found_soon(const ChangeKinds& kinds, double size, double scale) {
     std::mt19937_64 random(seed);
     ChangeDetector detector{ChangeSettings{}, kinds};
     for (int i = 0; i < 60; ++i) {
-      detector.see(scale * noise(random), kUnit, linear(i, 2.0));
+      detector.see(kChart, scale * noise(random), kUnit, linear(i, 2.0));
     }
     bool alarm = false;
     for (int i = 0; i < 3 && !alarm; ++i) {
       const Eigen::Vector3d jump = linear(i, size).col(5);
-      alarm = detector.see(jump + scale * noise(random), kUnit, linear(i, 2.0)).alarm;
+      alarm = detector.see(kChart, jump + scale * noise(random), kUnit, linear(i, 2.0)).alarm;
     }
     found += alarm ? 1 : 0;
   }
@@ -98,7 +99,7 @@ TEST_CASE("one outlier is no change of terrain, however large") {
   ChangeDetector detector{ChangeSettings{}, kKinds};
   for (int i = 0; i < 60; ++i) {
     const Eigen::Vector3d jump = i == 40 ? Eigen::Vector3d(0.0, 0.0, 100.0) : Eigen::Vector3d::Zero();
-    CHECK_FALSE(detector.see(noise(random) + jump, kUnit, turns(i, 4.0)).alarm);
+    CHECK_FALSE(detector.see(kChart, noise(random) + jump, kUnit, turns(i, 4.0)).alarm);
   }
 }
 
@@ -109,7 +110,7 @@ TEST_CASE("residuals that are always alike are nominal on this terrain") {
   Eigen::Vector3d slow = Eigen::Vector3d::Zero();
   for (int i = 0; i < 2000; ++i) {
     slow = 0.8 * slow + 0.6 * noise(random);
-    const double odds = detector.see(slow, kUnit, turns(0, 4.0)).log_odds;
+    const double odds = detector.see(kChart, slow, kUnit, turns(0, 4.0)).log_odds;
     (i < 200 ? first : last) += odds / (i < 200 ? 200.0 : 1800.0);
   }
   CHECK(last < 0.85 * first);
@@ -121,7 +122,7 @@ TEST_CASE("heavy-tailed residuals raise at most one alarm in a thousand segments
   int alarms = 0;
   int longest = 0;
   for (int i = 0; i < 20000; ++i) {
-    const ChangeTest test = detector.see(noise(random), kUnit, turns(i, 4.0));
+    const ChangeTest test = detector.see(kChart, noise(random), kUnit, turns(i, 4.0));
     alarms += test.alarm ? 1 : 0;
     longest = std::max(longest, test.segments);
   }
@@ -133,12 +134,12 @@ TEST_CASE("a small change is suspected before it is an alarm, and a restart leav
   std::mt19937_64 random(157);
   ChangeDetector detector{ChangeSettings{}, kKinds};
   for (int i = 0; i < 60; ++i) {
-    detector.see(noise(random), kUnit, turns(i, 2.0));
+    detector.see(kChart, noise(random), kUnit, turns(i, 2.0));
   }
   int suspected = -1;
   int found = -1;
   for (int i = 0; i < 20; ++i) {
-    const ChangeTest test = detector.see(turns(i, 2.0).col(1) * 1.2 + noise(random), kUnit, turns(i, 2.0));
+    const ChangeTest test = detector.see(kChart, turns(i, 2.0).col(1) * 1.2 + noise(random), kUnit, turns(i, 2.0));
     suspected = test.suspicion && suspected < 0 ? i : suspected;
     found = test.alarm && found < 0 ? i : found;
     CHECK((!test.alarm || test.suspicion));
@@ -146,7 +147,7 @@ TEST_CASE("a small change is suspected before it is an alarm, and a restart leav
   CHECK(suspected >= 0);
   CHECK((found < 0 || suspected <= found));
   detector.restart();
-  CHECK(detector.see(noise(random), kUnit, turns(0, 2.0)).segments == 0);
+  CHECK(detector.see(kChart, noise(random), kUnit, turns(0, 2.0)).segments == 0);
 }
 
 TEST_CASE("a parked robot shows no change") {
@@ -154,7 +155,7 @@ TEST_CASE("a parked robot shows no change") {
   ChangeDetector detector{ChangeSettings{}, kKinds};
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector3d pose_jumps(3.0, -4.0, 2.0);
-    CHECK(detector.see(pose_jumps, kUnit, ByChange::Zero(3, 2)).log_odds == 0.0);
+    CHECK(detector.see(kChart, pose_jumps, kUnit, ByChange::Zero(3, 2)).log_odds == 0.0);
   }
 }
 
@@ -164,13 +165,13 @@ TEST_CASE("a robot that was parked for long does not take its own driving for a 
   for (int i = 0; i < 600; ++i) {
     const bool parked = i < 30 || (i >= 100 && i < 500);
     const double moving = parked ? 0.0 : 1.0;
-    CHECK_FALSE(detector.see((0.01 + moving) * noise(random), kUnit, turns(i, 4.0 * moving)).alarm);
+    CHECK_FALSE(detector.see(kChart, (0.01 + moving) * noise(random), kUnit, turns(i, 4.0 * moving)).alarm);
   }
 }
 
 TEST_CASE("a model without parameters has nothing that could change") {
   ChangeDetector detector{ChangeSettings{}, {}};
-  CHECK_FALSE(detector.see(Eigen::Vector3d::Ones(), kUnit, ByChange(3, 0)).alarm);
+  CHECK_FALSE(detector.see(kChart, Eigen::Vector3d::Ones(), kUnit, ByChange(3, 0)).alarm);
 }
 
 TEST_CASE("a kind of change without any column is refused") {

@@ -125,7 +125,7 @@ TEST_CASE("reference speeds are the ninetieth percentile of those driven") {
   ModelAverage average("auto", {named_basis("edd-2")}, {}, {}, {});
   const std::vector<double> t{0.0, 8.0}, v{1.0, 4.0}, zero{0.0, 0.0}, omega{0.2, 0.2};
   const InputHistory inputs(t, v, zero, omega);
-  average.learn(inputs, {.start = 0.0, .end = 10.0, .measured = {5.0, 3.0, 2.0}});
+  average.learn(inputs, {.start = 0.0, .end = 10.0, .measured = measured_pose({5.0, 3.0, 2.0})});
   CHECK(average.reference_speeds().v == doctest::Approx(4.0).epsilon(0.05));
   CHECK(average.reference_speeds().omega == doctest::Approx(0.2).epsilon(0.05));
 }
@@ -176,7 +176,7 @@ TEST_CASE("on a new terrain candidates get as much weight as at first, on the ol
     }
     CHECK(alarms == (later_slip == -0.3 ? 0 : 1));
     CHECK(average.state().weights[0] < 1e-3);
-    average.learn(parked, {.start = 0.0, .end = 2.0, .measured = {}});  // tells nothing of any model
+    average.learn(parked, {.start = 0.0, .end = 2.0, .measured = measured_pose({})});  // tells nothing of any model
     return average.state().weights[0];
   };
   CHECK(dealt_to_plain(-0.3) == doctest::Approx(0.6 / 161.0).epsilon(0.02));
@@ -190,7 +190,7 @@ TEST_CASE("a parked robot forgets nothing") {
   const std::vector<double> t{0.0}, zero{0.0};
   const InputHistory parked(t, zero, zero, zero);
   for (int i = 0; i < 50; ++i) {
-    average.learn(parked, {.start = 2.0 * i, .end = 2.0 * i + 2.0, .measured = {0.1, -0.1, 0.05}});
+    average.learn(parked, {.start = 2.0 * i, .end = 2.0 * i + 2.0, .measured = measured_pose({0.1, -0.1, 0.05})});
     CHECK_FALSE(average.change().alarm);
   }
   CHECK(average.state().estimate.covariance.isApprox(before));

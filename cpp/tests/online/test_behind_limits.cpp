@@ -30,7 +30,7 @@ std::vector<DrivenSegment> segments(int count) {
     const double start = 2.0 * i;
     DrivenSegment driven{.inputs = InputHistory({start}, {{.v = 1.0}}),
                          .segment = {.start = start, .end = start + 2.0}};
-    driven.segment.measured.x = 2.0 * kTop;
+    driven.segment.measured.front().z[0] = 2.0 * kTop;
     all.push_back(driven);
   }
   return all;
@@ -49,7 +49,7 @@ MotionPosterior baseline() {
 TEST_CASE("behind a limit a segment is driven by what comes through") {
   const DrivenSegment driven = behind(segments(1).front(), limited());
   CHECK(driven.inputs.at(1.0).v == doctest::Approx(kTop));
-  CHECK(driven.segment.measured.x == doctest::Approx(2.0 * kTop));
+  CHECK(rows_of(driven.segment.measured)[0] == doctest::Approx(2.0 * kTop));
 }
 
 TEST_CASE("limits that act gain, and limits that do not lose nothing") {

@@ -111,7 +111,7 @@ double missed(const DrivenSegment& driven) {
       at = compose(at, exp((to - from) * Eigen::Vector3d(twist.v, twist.vy, twist.omega)));
     }
   }
-  return (at.vector() - driven.segment.measured.vector()).norm();
+  return (at.vector() - rows_of(driven.segment.measured)).norm();
 }
 
 TEST_CASE("held curves drive the segments that are cut without them, and need not be learned first") {

@@ -39,7 +39,7 @@ LegKnowledge knowledge(double clock_offset, double inflation) {
 
 DrivenSegment driven() {
   return {.inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.01, 800),
-          .segment = {.start = 6.0, .end = 6.5, .sensor = {0.3, 0.1, 0.2}}};
+          .segment = {.start = 6.0, .end = 6.5, .measured = measured_pose({}, {0.3, 0.1, 0.2})}};
 }
 
 TEST_CASE("a leg is the prediction of a segment, with its covariance times the inflation") {
@@ -49,7 +49,7 @@ TEST_CASE("a leg is the prediction of a segment, with its covariance times the i
       linearize_segment(known.posterior->model, known.posterior->estimate.mean, driven().inputs, driven().segment);
   const Eigen::Matrix3d expected = 1.7 * prediction_covariance(at, known.posterior->estimate.covariance,
                                                                known.posterior->noise, known.posterior->noise_scale);
-  CHECK(leg.motion.vector() == at.predicted.vector());
+  CHECK(leg.motion.vector() == at.predicted);
   CHECK((leg.covariance() - expected).norm() < 1e-12 * expected.norm());
   CHECK(leg.posterior == known.posterior);
   CHECK(leg.sensor.x == 0.3);

@@ -14,7 +14,7 @@ constexpr double kLongest = 2.5;
 /// A segment of 1 s that a source with such errors measured.
 void come(SourceMerge& merge, std::size_t source, double start, double noise) {
   DrivenSegment driven{.inputs = {}, .segment = {.start = start, .end = start + 1.0}, .known_at = start + 1.0};
-  driven.segment.source = SegmentSource{.number = source};
+  driven.segment.measured.front().sensor.number = source;
   merge.see(source, start, noise);
   merge.push({.driven = driven, .source = source, .noise = noise});
 }

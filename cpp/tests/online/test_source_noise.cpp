@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The size of errors, source by source and fix by fix.
 #include "slipwise/online/source_noise.hpp"
+#include "slipwise/sensor/pose_sensor.hpp"
 
 #include <doctest/doctest.h>
 
@@ -21,9 +22,10 @@ void show(SourceNoise& noise, std::size_t each, double times, int count) {
   noise.meet(each, kScale);
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector3d draw(normal(random), normal(random), normal(random));
-    noise.learn(each, {.squared = times * times * kScale.cwiseProduct(draw.cwiseAbs2()),
-                       .open = Eigen::Vector3d::Zero(),
-                       .expected = Eigen::Vector3d::Ones()});
+    noise.learn(each, PoseSensor::directions(),
+                {.squared = times * times * kScale.cwiseProduct(draw.cwiseAbs2()),
+                 .open = Eigen::Vector3d::Zero(),
+                 .expected = Eigen::Vector3d::Ones()});
   }
 }
 

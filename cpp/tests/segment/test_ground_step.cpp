@@ -153,7 +153,7 @@ TEST_CASE("level ground of any kind is no ground to rounding") {
     Segment segment = flat;
     segment.ground = std::make_shared<const Ground>(ground);
     const auto at = linearize_segment(model, parameters, inputs, segment);
-    CHECK((at.predicted.vector() - expected.predicted.vector()).norm() < 1e-13);
+    CHECK((at.predicted - expected.predicted).norm() < 1e-13);
     CHECK((at.by_parameter - expected.by_parameter).norm() < 1e-12);
   }
 }
@@ -193,12 +193,12 @@ TEST_CASE("the derivative by every parameter is exact on planes, on hills and al
         CAPTURE(drive.name);
         const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 120);
         const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
-          return integrate_segment(model, p, inputs, segment).sensor_motion().vector();
+          return integrate_segment(model, p, inputs, segment).rows();
         };
         const auto numeric = tests::finite_difference(value, parameters, 1e-3);
         const auto at = linearize_segment(model, parameters, inputs, segment);
         CHECK(tests::jacobian_error(at.by_parameter, numeric, 0.1) < tests::kDerivativeTolerance);
-        CHECK((at.predicted.vector() - value(parameters)).norm() < 1e-12);
+        CHECK((at.predicted - value(parameters)).norm() < 1e-12);
       }
     }
   }

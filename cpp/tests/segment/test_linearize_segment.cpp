@@ -61,7 +61,7 @@ Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& actua
 double linearization_error(const MotionModel& model, const Eigen::VectorXd& parameters, const InputHistory& inputs,
                            const Segment& segment) {
   const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
-    return integrate_segment(model, p, inputs, segment).sensor_motion().vector();
+    return integrate_segment(model, p, inputs, segment).rows();
   };
   const auto numeric = tests::finite_difference(value, parameters, kStep);
   return tests::jacobian_error(linearize_segment(model, parameters, inputs, segment).by_parameter, numeric, 0.1);
@@ -138,7 +138,7 @@ TEST_CASE("a segment's beginnings are linearised as segments that end there, and
         CHECK(part.end > wanted - 1e-9);
         CHECK(part.end < wanted + 0.1);
         const auto alone = linearize_segment(model, parameters, inputs, part);
-        CHECK((beginnings[i].predicted.vector() - alone.predicted.vector()).norm() < 1e-9);
+        CHECK((beginnings[i].predicted - alone.predicted).norm() < 1e-9);
         CHECK(beginnings[i].path.poses.size() == beginnings[i].path.drive.size() + 1);
         // The end of a step lies where a delayed input changes: there the derivative by delays has a kink.
         CHECK((beginnings[i].by_parameter - alone.by_parameter).leftCols(model.slip_size()).norm() < 1e-9);
@@ -157,7 +157,7 @@ TEST_CASE("linearised segments predict what integration predicts") {
         const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
         const auto linearized = linearize_segment(model, parameters, inputs, kSegment);
         const SegmentPath path = integrate_segment(model, parameters, inputs, kSegment);
-        CHECK((linearized.predicted.vector() - path.sensor_motion().vector()).norm() < 1e-12);
+        CHECK((linearized.predicted - path.rows()).norm() < 1e-12);
         REQUIRE(linearized.path.poses.size() == path.poses.size());
         CHECK(linearized.path.times == path.times);
         CHECK(linearized.path.tangents.size() == path.tangents.size());
@@ -182,8 +182,8 @@ TEST_CASE("a linearisation is carried over small steps to a quarter of the noise
       const auto at = linearize_segment(model, parameters, inputs, kSegment);
       for (const double size : {0.001, 0.01, 0.03, 0.1}) {
         if (const auto near = carried(at, model, size * pattern, noise)) {
-          const auto there = integrate_segment(model, parameters + size * pattern, inputs, kSegment).sensor_motion();
-          CHECK((near->predicted.vector() - there.vector()).norm() < 0.25 * std);
+          const auto there = integrate_segment(model, parameters + size * pattern, inputs, kSegment).rows();
+          CHECK((near->predicted - there).norm() < 0.25 * std);
         }
       }
       CHECK(carried(at, model, 0.001 * pattern, noise));
@@ -195,7 +195,7 @@ TEST_CASE("a linearisation is carried over small steps to a quarter of the noise
 TEST_CASE("the derivative is exact for a sensor whose place is known") {
   const Basis basis = named_basis("odd-even-10");
   Segment observed = kSegment;
-  observed.sensor = {-0.7, 0.3, -1.2};
+  observed.measured.front().sensor.place = {-0.7, 0.3, -1.2};
   for (const Case& actuator : sample_chains()) {
     check_all_drives(basis, actuator, 0.05, observed);
   }
@@ -205,7 +205,7 @@ TEST_CASE("a spin of more than one turn keeps its turns in the prediction") {
   const MotionModel model(named_basis("edd-2"), {});
   const InputHistory inputs = tests::sampled([](double) { return BodyTwist{0.1, 0.0, 5.0}; }, 0.0, 0.05, 100);
   const auto at = linearize_segment(model, Eigen::Vector2d::Zero(), inputs, {.start = 1.0, .end = 3.0});
-  CHECK(at.predicted.theta == doctest::Approx(10.0).epsilon(1e-12));
+  CHECK(at.predicted[2] == doctest::Approx(10.0).epsilon(1e-12));
 }
 
 TEST_CASE("the derivative is exact where a force turns with the map, on level ground and on a hillside") {

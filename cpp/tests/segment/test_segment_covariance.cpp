@@ -89,7 +89,7 @@ TEST_CASE("the covariance of a slip that lasts the whole segment is that of simu
 
 TEST_CASE("the covariance of a lasting slip is made of its columns, one for each channel") {
   SegmentPath path = sample_path();
-  path.sensor = {0.4, -0.1, 0.3};
+  path.measured.front().sensor.place = {0.4, -0.1, 0.3};
   const MotionNoise noise{.fraction = {0.05, 0.1, 0.2}};
   const Eigen::Matrix3d columns = constant_slip(path, noise);
   CHECK((columns * columns.transpose() - slip_covariance(path, noise)).norm() < 1e-14);

@@ -109,11 +109,9 @@ def _prior(posterior: Posterior) -> _core.Estimate:
 
 
 def _noise(posterior: Posterior, shape: _core.MotionNoise, windows: WindowSet, i: int) -> Floats:
-    """Covariance of the measured chart of window i, [3, 3]."""
+    """Covariance of what was measured of window i, a row for each number."""
     segment = windows.segments[i]
     path = _core.integrate_segment(
         posterior.motion, posterior.mean, windows.input_history(i), segment, _core.Integrator.Exact
     )
-    covariance = _core.slip_covariance(path, shape) + _core.pose_noise_covariance(segment.measured, shape)
-    root = np.sqrt(posterior.noise_scale)
-    return np.asfortranarray(covariance * np.outer(root, root))
+    return np.asfortranarray(_core.segment_noise(path, segment, shape, posterior.noise_scale))

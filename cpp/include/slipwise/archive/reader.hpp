@@ -152,6 +152,9 @@ class CheckedReader : public ByteReader {
   template <Matrix T>
   void read_matrix(T& value) {
     const auto [rows, cols] = read_shape(T::RowsAtCompileTime, T::ColsAtCompileTime, sizeof(typename T::Scalar));
+    if (!fits(rows, T::MaxRowsAtCompileTime) || !fits(cols, T::MaxColsAtCompileTime)) {
+      refuse("malformed: a matrix is too large");
+    }
     value.resize(rows, cols);
     if constexpr (std::same_as<typename T::Scalar, double> && (!T::IsRowMajor || T::IsVectorAtCompileTime)) {
       read_doubles(value.data(), value.size());
@@ -162,12 +165,14 @@ class CheckedReader : public ByteReader {
     }
   }
 
+  static bool fits(Eigen::Index size, int most) { return most == Eigen::Dynamic || size <= most; }
+
   template <std::integral T>
   T read_integer() {
     const std::uint64_t bits = read_64();
-    const bool fits =
+    const bool in_range =
         std::signed_integral<T> ? std::in_range<T>(static_cast<std::int64_t>(bits)) : std::in_range<T>(bits);
-    if (!fits) {
+    if (!in_range) {
       refuse("malformed: a number is out of range");
     }
     return static_cast<T>(bits);

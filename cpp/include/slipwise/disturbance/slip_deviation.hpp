@@ -5,17 +5,18 @@
 #include <Eigen/Core>
 #include <utility>
 
+#include "slipwise/linear/rows.hpp"
 #include "slipwise/motion/disturbance_model.hpp"
 
 namespace slipwise {
 
 /// A segment as it was expected without any deviation, and how a deviation would show in it.
 struct ObservedSlip {
-  using ByDeviation = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMostDisturbed>;
-  double start;                ///< [s]
-  double end;                  ///< [s]
-  Eigen::Vector3d innovation;  ///< measured minus expected chart
-  Eigen::Matrix3d noise;       ///< its covariance, were the parameters known
+  using ByDeviation = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMostDisturbed>;
+  double start;          ///< [s]
+  double end;            ///< [s]
+  Rows innovation;       ///< measured minus expected
+  RowsCovariance noise;  ///< its covariance, were the parameters known
   ByDeviation by_deviation;
 };
 

@@ -24,10 +24,10 @@ struct DisturbanceSettings {
   WeightingSettings weighting{.learning_rate = 1.0, .fraction = 0.01};
 };
 
-/// Where a segment is expected to end: chart (x, y, theta) of T_start_end and its covariance.
+/// Where a segment is expected to end: what its sensors see, of a pose sensor the chart (x, y, theta) of T_start_end.
 struct ExpectedPose {
-  Eigen::Vector3d pose;
-  Eigen::Matrix3d covariance;
+  Rows pose;
+  RowsCovariance covariance;
 };
 
 /// Where slip is at some time, under each candidate; empty where no term has a disturbance.

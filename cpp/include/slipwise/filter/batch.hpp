@@ -28,16 +28,13 @@ struct BatchSettings {
   Eigen::VectorXd start = {};
 };
 
-/// No covariance with any error.
-Eigen::Matrix3d nothing_shared();
-
 /// A segment, the inputs that it belongs to, and the covariance R of its measured chart.
 struct BatchDatum {
   InputHistory inputs;
   Segment segment;
-  Eigen::Matrix3d noise;
-  /// Covariance of its error with that of the datum before.
-  Eigen::Matrix3d shared = nothing_shared();
+  RowsCovariance noise;
+  /// Covariance of its error with that of the datum before; empty where they share nothing.
+  RowsCovariance shared = {};
 };
 
 struct BatchFit {
@@ -57,8 +54,8 @@ struct BatchPoint {
 
 /// What is new in the error of a datum, given that of the one before: a block of the Cholesky factor of all errors.
 struct NewError {
-  Eigen::Matrix3d by_before;          ///< of what was new in the one before, how much comes again
-  Eigen::LLT<Eigen::Matrix3d> noise;  ///< of what is new
+  RowsCovariance by_before;          ///< of what was new in the one before, how much comes again
+  Eigen::LLT<RowsCovariance> noise;  ///< of what is new
 };
 
 /// The search for the fit in slices of bounded work, so that it can run beside something that must not wait.

@@ -87,11 +87,11 @@ class BranchBank {
   static constexpr std::size_t kHeld = 10;  // segments until branches count as another terrain
 
   void bear(const BranchSegment& driven, double motion);
-  void weigh(const SegmentLinearization& at, const Eigen::VectorXd& mean, const Eigen::Vector3d& innovation,
-             const Eigen::Matrix3d& noise, double alike);
+  void weigh(const SegmentLinearization& at, const Eigen::VectorXd& mean, const Rows& innovation,
+             const RowsCovariance& noise, double alike);
   void prune();
   IekfUpdate update_all(const MotionModel& model, const BranchSegment& driven, SegmentLinearization at,
-                        const Eigen::Matrix3d& noise, const IekfSettings& settings);
+                        const RowsCovariance& noise, const IekfSettings& settings);
   void follow_leader();
 
   std::vector<JumpKind> kinds_;

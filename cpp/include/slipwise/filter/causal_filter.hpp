@@ -118,9 +118,9 @@ class CausalFilter {
   BranchBank branches_;
 };
 
-/// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.
-Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,
-                                      const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
-                                      const Eigen::Vector3d& scale);
+/// Covariance of what is predicted: parameters, slip noise and, where `with_pose_noise`, the two measured poses.
+RowsCovariance prediction_covariance(const SegmentLinearization& at,
+                                     const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
+                                     const Eigen::Vector3d& scale);
 
 }  // namespace slipwise

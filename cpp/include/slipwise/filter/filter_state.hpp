@@ -10,8 +10,8 @@ namespace slipwise {
 
 /// R of a measured segment by the shape of the noise alone, and as large as it was learned to be.
 struct SegmentNoise {
-  Eigen::Matrix3d expected;
-  Eigen::Matrix3d scaled;
+  RowsCovariance expected;
+  RowsCovariance scaled;
 };
 
 struct FilterState {

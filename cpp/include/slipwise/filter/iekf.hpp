@@ -24,23 +24,24 @@ struct IekfSettings {
 
 /// One segment's update.
 struct IekfUpdate {
-  Estimate estimate;                      ///< after the segment
-  Eigen::Vector3d innovation;             ///< measured minus predicted chart (x, y, theta), before the update
-  Eigen::Matrix3d innovation_covariance;  ///< S = J P J^T + R before the update
-  double nis;                             ///< innovation^T S^-1 innovation
-  double weight;                          ///< Huber weight, 1 where nothing was unusual, 0 where rejected
+  Estimate estimate;                     ///< after the segment
+  Rows innovation;                       ///< measured minus predicted, before the update
+  RowsCovariance innovation_covariance;  ///< S = J P J^T + R before the update
+  double nis;                            ///< innovation^T S^-1 innovation
+  double weight;                         ///< Huber weight, 1 where nothing was unusual, 0 where rejected
   Status status;
   SegmentLinearization at = {};  ///< at the estimate's mean, as `iekf_update` returns it
-  /// Of the chart, what the actuator bends away from its linearisation: added to the noise where the covariance learns.
-  Eigen::Matrix3d bent = Eigen::Matrix3d::Zero();
+  /// What the actuator bends away from its linearisation: added to the noise where the covariance learns.
+  RowsCovariance bent = {};
 };
 
-/// `noise` is the covariance R of the segment's measured chart. \throws std::invalid_argument when sizes do not fit.
+/// `noise` is the covariance R of what was measured of the segment. \throws std::invalid_argument when sizes do not
+/// fit.
 IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
-                       const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings = {});
+                       const Segment& segment, const RowsCovariance& noise, const IekfSettings& settings = {});
 /// The same where the segment is linearised at the prior's mean already, as its noise may need.
 IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
-                       const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
+                       const Segment& segment, SegmentLinearization at_prior, const RowsCovariance& noise,
                        const IekfSettings& settings = {});
 
 /// Covariance in the coordinates of times after their means moved from `before` (derivations/filter.md).

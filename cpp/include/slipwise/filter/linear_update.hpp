@@ -6,6 +6,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "slipwise/linear/rows.hpp"
+
 namespace slipwise {
 
 /// Gain of a measurement z = H x + noise of covariance R, for a state of covariance P; P becomes what it is afterwards,
@@ -16,13 +18,15 @@ auto linear_update(Eigen::PlainObjectBase<Matrix>& covariance, const Eigen::Matr
   constexpr int kMeasured = ByState::RowsAtCompileTime;
   constexpr int kStates = Matrix::RowsAtCompileTime;
   constexpr int kMostStates = Matrix::MaxRowsAtCompileTime;
-  static_assert(kMeasured > 0 && kMeasured <= 3);
-  using Gain = Eigen::Matrix<double, kStates, kMeasured, kStates == 1 ? Eigen::RowMajor : Eigen::ColMajor, kMostStates,
-                             kMeasured>;
-  const Eigen::Matrix<double, kMeasured, kStates, kMeasured == 1 ? Eigen::RowMajor : Eigen::ColMajor, kMeasured,
+  constexpr int kMost = ByState::MaxRowsAtCompileTime;
+  static_assert(kMost > 0 && kMost <= kMostRows);
+  using Gain =
+      Eigen::Matrix<double, kStates, kMeasured, kStates == 1 ? Eigen::RowMajor : Eigen::ColMajor, kMostStates, kMost>;
+  const Eigen::Matrix<double, kMeasured, kStates, kMeasured == 1 ? Eigen::RowMajor : Eigen::ColMajor, kMost,
                       kMostStates>
       spread = by_state * covariance;
-  const Eigen::Matrix<double, kMeasured, kMeasured> innovation = spread.lazyProduct(by_state.transpose()) + noise;
+  const Eigen::Matrix<double, kMeasured, kMeasured, Eigen::ColMajor, kMost, kMost> innovation =
+      spread.lazyProduct(by_state.transpose()) + noise;
   Gain gain = innovation.llt().solve(spread).transpose();
   if (covariance.size() == 0) {
     return gain;  // the kinematic baseline has nothing to learn

@@ -24,6 +24,13 @@ struct NoiseSettings {
   double largest = 9.0;  ///< a squared residual counts at most this many times its expected value [-]
 };
 
+/// Errors of rows: their squares, which part of these the parameters explain, and the variances of the shape of noise.
+struct RowErrors {
+  Rows squared;
+  Rows open;
+  Rows expected;
+};
+
 class NoiseScale {
  public:
   explicit NoiseScale(const NoiseSettings& settings = {}) : settings_(settings) {}
@@ -36,17 +43,14 @@ class NoiseScale {
   /// One step of expectation-maximisation: the residual after the update plus what the parameters leave open.
   /// `expected` are the variances of the shape. Does nothing if the settings fix the noise.
   /// `at` is the segment at the estimate whose covariance is given.
-  void learn(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Pose2& measured,
-             const Eigen::Vector3d& expected);
-  /// Squared errors as a segment shows them: of what it does not measure, they are as expected.
-  Eigen::Vector3d shown_by(const SegmentPath& path, Eigen::Vector3d squared, const Eigen::Vector3d& expected) const;
+  void learn(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Segment& segment,
+             const Rows& expected);
   /// Follows the next residuals as fast as those of the first segments, from the present value.
   void reset_gain() { segments_ = std::min(segments_, settings_.prior_segments); }
   /// Forgets all residuals.
   void restart() { *this = NoiseScale(settings_); }
-  /// The same as `learn` for a model that never learns the segment: of its squared error, the parameters explain
-  /// `open`.
-  void learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open, const Eigen::Vector3d& expected);
+  /// The same as `learn` for a model that never learns the segment, whose rows have these directions.
+  void learn_prediction(const Directions& directions, const RowErrors& shown);
 
   /// Names what is saved.
   template <class Self, class Archive>
@@ -55,7 +59,7 @@ class NoiseScale {
   }
 
  private:
-  void follow(const Eigen::Vector3d& squared, const Eigen::Vector3d& expected);
+  void follow(const Directions& directions, const Rows& squared, const Rows& expected);
 
   NoiseSettings settings_;
   Eigen::Vector3d value_ = {1.0, 1.0, 1.0};

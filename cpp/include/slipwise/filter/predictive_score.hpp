@@ -11,9 +11,9 @@ namespace slipwise {
 
 /// A segment as it was predicted.
 struct ScoredSegment {
-  Eigen::Vector3d innovation;             ///< measured minus predicted chart (x, y, theta)
-  Eigen::Matrix3d innovation_covariance;  ///< S, parameters and noise
-  double nis;                             ///< innovation^T S^-1 innovation
+  Rows innovation;                       ///< measured minus predicted
+  RowsCovariance innovation_covariance;  ///< S, parameters and noise
+  double nis;                            ///< innovation^T S^-1 innovation
 };
 
 /// Scores a model that is learned elsewhere on segments that it has not learned, and learns the size of the noise.

@@ -33,7 +33,7 @@ class ScoreCovariance {
   /// Adds one segment: linearised `at` the estimate whose covariance is given, learned with `noise`. One that says
   /// nothing of the parameters is passed over.
   void add(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Segment& segment,
-           const Eigen::Matrix3d& noise);
+           const RowsCovariance& noise);
   /// Adds one measurement of any size.
   void add(const MeasurementScore& measured);
   /// Forgets all segments.

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "slipwise/linear/rows.hpp"
+
 namespace slipwise {
 
 struct WeightingSettings {
@@ -25,19 +27,19 @@ Eigen::VectorXd updated_weights(const Eigen::VectorXd& weights, const Eigen::Vec
 
 /// Log density of an innovation under a Student-t with the scale of its covariance, without constants: real residuals
 /// have heavy tails.
-double student_log_score(double nis, const Eigen::Matrix3d& covariance);
+double student_log_score(double nis, const RowsCovariance& covariance);
 
 /// Log scores of candidates that predicted the same segment, with innovations [M] of covariances [M], all under one
 /// covariance, their mean by weight: a candidate is judged by its errors, not by how well it knows their size.
 /// \throws std::invalid_argument when there is not one of each per weight.
-Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, std::span<const Eigen::Vector3d> innovations,
-                                  std::span<const Eigen::Matrix3d> covariances);
+Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, std::span<const Rows> innovations,
+                                  std::span<const RowsCovariance> covariances);
 
 /// The same of predictions, each of which has an `innovation` and an `innovation_covariance`.
 template <class Predictions>
 Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, const Predictions& predictions) {
-  std::vector<Eigen::Vector3d> innovations;
-  std::vector<Eigen::Matrix3d> covariances;
+  std::vector<Rows> innovations;
+  std::vector<RowsCovariance> covariances;
   for (const auto& each : predictions) {
     innovations.push_back(each.innovation);
     covariances.push_back(each.innovation_covariance);

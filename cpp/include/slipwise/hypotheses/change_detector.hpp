@@ -6,6 +6,8 @@
 #include <deque>
 #include <vector>
 
+#include "slipwise/sensor/seen.hpp"
+
 namespace slipwise {
 
 struct ChangeSettings {
@@ -36,9 +38,10 @@ struct ChangeFit {
   double expected_gain;  ///< of white residuals on unchanged terrain
 };
 
-/// `residuals` are whitened, [3 n]; the columns of `by_change` are their derivatives by independent changes in units of
-/// their nominal size, [3 n, changes]. Residuals and changes have heavy tails (derivations/surfaces.md).
-ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change);
+/// `residuals` are whitened, [rows n], of as many `rows` a segment; the columns of `by_change` are their derivatives by
+/// independent changes in units of their nominal size, [rows n, changes]. Residuals and changes have heavy tails
+/// (derivations/surfaces.md).
+ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change, Eigen::Index rows = 3);
 
 /// The ways in which a terrain may come to differ: each a list of changes that come together.
 using ChangeKinds = std::vector<std::vector<Eigen::Index>>;
@@ -52,11 +55,11 @@ class ChangeDetector {
   /// \throws std::invalid_argument when the settings test no segment, or a kind is empty.
   ChangeDetector(const ChangeSettings& settings, ChangeKinds kinds);
 
-  /// Tests whether the terrain changed before this segment or one of the last. `innovation` had covariance `covariance`
-  /// under what was learned before; `by_change` is its derivative by changes in units of their nominal size. After an
-  /// alarm the test starts again.
-  ChangeTest see(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
-                 const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change);
+  /// Tests whether the terrain changed before this segment or one of the last. `innovation`, of rows of these
+  /// directions, had covariance `covariance` under what was learned before; `by_change` is its derivative by changes in
+  /// units of their nominal size. After an alarm the test starts again.
+  ChangeTest see(const Directions& directions, const Rows& innovation, const RowsCovariance& covariance,
+                 const RowsJacobian& by_change);
 
   /// Leaves out of the next tests what was measured before.
   void restart() { recent_.clear(); }
@@ -73,11 +76,11 @@ class ChangeDetector {
 
  private:
   struct Whitened {
-    Eigen::Vector3d residual;
-    Eigen::Matrix<double, 3, Eigen::Dynamic> by_change;
+    Rows residual;
+    RowsJacobian by_change;
   };
-  Whitened whitened(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
-                    const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change);
+  Whitened whitened(const Directions& directions, const Rows& innovation, const RowsCovariance& covariance,
+                    const RowsJacobian& by_change);
   double test_last(int segments);
   ChangeFit fit_last(int segments, const std::vector<Eigen::Index>& kind, double nominal) const;
   void learn_nominal(double& nominal, const ChangeFit& fit) const;

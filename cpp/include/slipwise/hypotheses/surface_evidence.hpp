@@ -55,8 +55,7 @@ class SurfaceEvidence {
 
     void decay(double seconds);
     /// Returns the log score of the innovation.
-    double learn(const Eigen::Vector3d& innovation, const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_state,
-                 const Eigen::Matrix3d& noise);
+    double learn(const Rows& innovation, const RowsJacobian& by_state, const RowsCovariance& noise);
   };
 
   SurfacePosterior posterior_;

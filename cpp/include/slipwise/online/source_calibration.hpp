@@ -23,8 +23,8 @@ class SourceCalibration {
   Segment corrected(const Segment& segment) const { return placed(segment, estimate_.mean); }
   /// Learns from a segment, as its source stamped it.
   void learn(const MotionPosterior& posterior, const DrivenSegment& driven, const IekfSettings& settings);
-  /// Variances of (x, y, theta) of the segment that what is not known of the source causes, over those of its noise.
-  Eigen::Vector3d open(const MotionPosterior& posterior, const DrivenSegment& driven) const;
+  /// Variances of the rows of the segment that what is not known of the source causes, over those of its noise.
+  Rows open(const MotionPosterior& posterior, const DrivenSegment& driven) const;
   /// Of the lateness [s], and of x, y [m] and yaw [rad] in base_link.
   const Estimate& estimate() const { return estimate_; }
 

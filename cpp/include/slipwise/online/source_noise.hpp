@@ -12,14 +12,6 @@
 
 namespace slipwise {
 
-/// What a segment shows of the noise: squared errors of its prediction (x, y, theta), how much of them the parameters
-/// leave open, and the variances that the shape of the noise expects.
-struct ShownNoise {
-  Eigen::Vector3d squared;
-  Eigen::Vector3d open;
-  Eigen::Vector3d expected;
-};
-
 /// The filters learn how large the noise of one class is (a source and a fix): the best fix of the first source. For
 /// each other class there is a mean of squared errors here. `scale` is always the filters' own, as it is now.
 class SourceNoise {
@@ -29,7 +21,7 @@ class SourceNoise {
   /// Segments of this class begin to come.
   void meet(std::size_t noise_class, const Eigen::Vector3d& scale);
   /// Learns from a segment between two poses of a class that was met.
-  void learn(std::size_t noise_class, const ShownNoise& shown);
+  void learn(std::size_t noise_class, const Directions& directions, const RowErrors& shown);
   /// Whether the filters learn from it how large noise is.
   bool is_reference(const std::array<std::size_t, 2>& classes) const;
   /// Factor of the variances of (x, y, theta) that the shape expects, between poses of these classes.

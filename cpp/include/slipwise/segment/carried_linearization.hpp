@@ -14,7 +14,6 @@ namespace slipwise {
 /// the derivative, which stays, and so does the path, whose noise hardly changes. Nothing where it bends by more than a
 /// tenth of the standard deviations of the `noise` of what measures it.
 std::optional<SegmentLinearization> carried(const SegmentLinearization& at, const MotionModel& model,
-                                            const Eigen::Ref<const Eigen::VectorXd>& step,
-                                            const Eigen::Matrix3d& noise);
+                                            const Eigen::Ref<const Eigen::VectorXd>& step, const RowsCovariance& noise);
 
 }  // namespace slipwise

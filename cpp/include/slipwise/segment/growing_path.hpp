@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,12 +22,6 @@ class GrowingPath {
     path_.tangents.reserve(steps);
     path_.times.push_back(path_start(segment));
     path_.poses.emplace_back();
-    path_.pose_std_ratio = segment.pose_std_ratio;
-    if (segment.source) {
-      path_.noise_factor = segment.source->noise_factor;
-      path_.own_noise = segment.source->own_noise;
-      path_.heading_std = segment.source->heading_only ? segment.gyro_std : std::nullopt;
-    }
   }
 
   const Eigen::Matrix2d& heading() const { return heading_; }
@@ -48,11 +41,10 @@ class GrowingPath {
 
   double time() const { return path_.times.back(); }
 
-  SegmentPath finish(std::vector<ActuatorStep> drive, const Pose2& sensor,
-                     const std::optional<CoursePlaces>& course = std::nullopt) && {
+  SegmentPath finish(std::vector<ActuatorStep> drive, std::vector<Measured> measured, std::vector<Sight> sights) && {
     path_.drive = std::move(drive);
-    path_.sensor = sensor;
-    path_.course = course;
+    path_.measured = std::move(measured);
+    path_.sights = std::move(sights);
     return std::move(path_);
   }
 

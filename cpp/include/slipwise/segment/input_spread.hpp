@@ -12,8 +12,8 @@
 namespace slipwise {
 
 /// Covariance of the chart (x, y, theta) of the sensor's motion over a segment, of its inputs alone.
-Eigen::Matrix3d input_covariance(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                 const DrivenSegment& driven, const InputSpread& spread);
+RowsCovariance input_covariance(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                const DrivenSegment& driven, const InputSpread& spread);
 /// The same of its beginnings, which end at `times` [s].
 std::vector<Eigen::Matrix3d> input_covariances(const MotionModel& model,
                                                const Eigen::Ref<const Eigen::VectorXd>& parameters,

@@ -12,8 +12,8 @@
 #include "slipwise/actuator/input_history.hpp"
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/motion/motion_model.hpp"
-#include "slipwise/segment/course.hpp"
 #include "slipwise/segment/segment.hpp"
+#include "slipwise/segment/sight.hpp"
 #include "slipwise/slip/slip_ahead.hpp"
 
 namespace slipwise {
@@ -21,27 +21,26 @@ namespace slipwise {
 /// Exact: exponential of each step's mean twist. Rk4: the thesis's Runge-Kutta steps, for comparison.
 enum class Integrator : std::uint8_t { Exact, Rk4 };
 
-/// The robot's path observed from its start. Between positions it begins where the first of their chords does.
+/// The robot's path observed from its start, which is the segment's, or earlier where a sensor looks at that.
 struct SegmentPath {
-  std::vector<double> times;                        ///< [steps + 1], [s], in pose stamps
-  std::vector<Pose2> poses;                         ///< [steps + 1], the first is the origin
-  std::vector<Eigen::Vector3d> tangents;            ///< [steps], twist * duration with slip
-  std::vector<ActuatorStep> drive;                  ///< [steps], the drive without slip
-  Pose2 sensor;                                     ///< pose in base_link of the sensor that measures the path
-  std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the segment's measured poses
-  std::optional<CoursePlaces> course = {};          ///< where the segment lies between positions
-  Eigen::Vector3d noise_factor = {1.0, 1.0, 1.0};   ///< of the variances of what measures it
-  bool own_noise = false;                           ///< a learned scale of noise is not that of what measures it
-  std::optional<double> heading_std = {};           ///< of the turn, where that alone is measured [rad]
+  std::vector<double> times;              ///< [steps + 1], [s], in pose stamps
+  std::vector<Pose2> poses;               ///< [steps + 1], the first is the origin
+  std::vector<Eigen::Vector3d> tangents;  ///< [steps], twist * duration with slip
+  std::vector<ActuatorStep> drive;        ///< [steps], the drive without slip
+  std::vector<Measured> measured = {};  ///< that of the segment, sensors where they sit also where a model learns that
+  std::vector<Sight> sights = {};       ///< what each of the sensors looks at
 
-  /// Where the sensor is at the points of the course, seen from the path's start.
-  CoursePositions course_positions() const;
-  /// By how much the robot turns between the start and the end of the course [rad].
-  double course_turn() const;
-  /// The sensor's motion, X^-1 T X, or between positions that by courses: what `Segment::measured` is compared with.
-  Pose2 sensor_motion() const;
-  /// The robot's motion that a sensor's motion tells, X M X^-1.
-  Pose2 robot_motion(const Pose2& measured) const;
+  /// Where the first sensor sits in base_link.
+  const Pose2& sensor() const { return measured.front().sensor.place; }
+  /// What each sensor sees of it.
+  std::vector<Seen> seen() const;
+  /// R, before the factors of the noise: what each sensor says of rows that it measured, or might have.
+  RowsCovariance measurement_noise(const Rows& rows, const MotionNoise& noise) const;
+  /// What all sensors see of it: what is measured of the segment is compared with that.
+  Rows rows() const { return stacked(seen()); }
+  Directions directions() const { return directions_of(measured); }
+  /// The robot's motion that a motion of the first sensor tells, X M X^-1.
+  Pose2 robot_motion(const Pose2& motion) const;
 };
 
 /// A model that learns where the sensor sits says so itself; otherwise the segment does.
@@ -53,9 +52,17 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
 
 struct SegmentLinearization {
   SegmentPath path;
-  Pose2 predicted;                                        ///< T_start_end of the pose sensor
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_parameter;  ///< derivative of the chart (x, y, theta) of `predicted`
+  Rows predicted;             ///< what the sensors see of it
+  RowsJacobian by_parameter;  ///< derivative of `predicted`
+
+  /// T_start_end of a sensor of poses; of others, what they tell of it.
+  Pose2 pose() const { return Pose2::from_vector(chart_of(path.directions(), predicted)); }
 };
+
+/// Measured minus predicted.
+Rows error_of(const Segment& segment, const SegmentLinearization& at);
+/// The same, turns by their shorter way.
+Rows shorter_error_of(const Segment& segment, const SegmentLinearization& at);
 
 /// Value and exact derivative in one pass (prefix scan of derivations/model.md).
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,

@@ -3,36 +3,30 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 
 #include "slipwise/motion/motion_noise.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
 
-/// Covariance of the chart (x, y, theta) of T_start_end of the pose sensor that the slip noise causes along the path.
-Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& noise);
-/// How the chart of T_start_end of the pose sensor changes with a slip that is the same fraction of motion all along:
-/// column c is one standard deviation of channel c.
+/// Covariance of what the sensors see that the slip noise causes along the path.
+RowsCovariance slip_covariance(const SegmentPath& path, const MotionNoise& noise);
+/// How what one sensor of three rows sees changes with a slip that is the same fraction of motion all along: column c
+/// is one standard deviation of channel c.
 Eigen::Matrix3d constant_slip(const SegmentPath& path, const MotionNoise& noise);
-/// Covariance of a measured T_start_end because both poses are measured: H R1 H^T + R2, with each pose's
-/// standard deviations times its ratios.
-Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise,
-                                      const std::array<PoseStdRatio, 2>& ratio = {});
-/// The same of the segment that `path` predicts, along which `measured` was driven; between positions, noise goes
-/// through all that make the courses.
-Eigen::Matrix3d pose_noise_covariance(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise);
-/// Covariance of the chart of a measured motion with that of the one before it, where they meet at one measured pose.
-Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise,
-                                  const PoseStdRatio& ratio = {});
-/// A covariance of (x, y, theta) with a factor of its variances.
-Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale);
-/// Of a measured segment: slip and both poses, times the factor of the source that measures it.
-Eigen::Matrix3d expected_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise);
-/// The learned factor of its variances that goes with what measures the segment.
-Eigen::Vector3d scale_for(const SegmentPath& path, const Eigen::Vector3d& scale);
-/// R of a measured segment: the same with a factor of the variances of (x, y, theta).
-Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
-                              const Eigen::Vector3d& scale);
+/// Covariance of what was measured of a segment with what was of the one before it, where they meet at one measured
+/// pose of one source, under a learned scale; empty where they share nothing.
+RowsCovariance shared_noise(const Segment& segment, const Segment& before, const MotionNoise& noise,
+                            const Eigen::Vector3d& scale);
+/// A covariance with a factor of its variances.
+RowsCovariance scaled_covariance(const RowsCovariance& covariance, const Rows& scale);
+/// Of a measured segment: slip and what its sensors say of their noise, times their own factors. `measured` are the
+/// rows of all.
+RowsCovariance expected_noise(const SegmentPath& path, const Rows& measured, const MotionNoise& noise);
+/// The learned factor of the variance of each row; 1 where that is not of its sensor.
+Rows scale_for(const SegmentPath& path, const Eigen::Vector3d& scale);
+/// R of a measured segment: the same with a learned factor of the variances of (x, y, theta), where that is theirs.
+RowsCovariance segment_noise(const SegmentPath& path, const Rows& measured, const MotionNoise& noise,
+                             const Eigen::Vector3d& scale);
 
 }  // namespace slipwise

@@ -30,7 +30,7 @@ Estimate BatchEstimator::estimate() const {
   data.reserve(kept_.size());
   for (const Kept& kept : kept_) {
     const SegmentPath path = integrate_segment(model(), prior_.mean, kept.inputs, kept.segment);
-    data.push_back({kept.inputs, kept.segment, segment_noise(path, kept.segment.measured, noise_, scale_)});
+    data.push_back({kept.inputs, kept.segment, segment_noise(path, rows_of(kept.segment.measured), noise_, scale_)});
   }
   return batch_fit(model(), prior_, data, {.huber = huber_}).estimate;
 }

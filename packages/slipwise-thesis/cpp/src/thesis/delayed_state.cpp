@@ -85,7 +85,7 @@ void DelayedState::advance_at(const Point& point, const InputHistory& inputs, co
   const Segment segment{.start = time_, .end = leg.end, .initial = leg.initial, .gx = leg.gx, .gy = leg.gy};
   const auto at = linearize_segment(model_, point.parameters, inputs, segment);
   const Eigen::Index m = model_.size();
-  const Pose2 end = compose(point.pose, at.predicted);
+  const Pose2 end = compose(point.pose, at.pose());
   const Eigen::Matrix3d gamma = turned(point.pose.theta);
   const Eigen::Matrix3d scaled_gamma = gamma * scale_.cwiseSqrt().asDiagonal();
   Eigen::Matrix<double, 3, Eigen::Dynamic> f(3, m + 3);
@@ -140,10 +140,10 @@ IekfUpdate DelayedState::judge(const Pose2& end) const {
 /// Parameters near the optimum: an IEKF of this segment alone, with its step-halving.
 Eigen::VectorXd DelayedState::settled(const InputHistory& inputs, const Segment& segment, const Pose2& end) const {
   Segment observed = segment;
-  observed.measured = between(pose(), end);
+  observed.measured.front().z = between(pose(), end).vector();
   const Estimate before = estimate();
   auto at = linearize_segment(model_, before.mean, inputs, observed);
-  const Eigen::Matrix3d noise = segment_noise(at.path, observed.measured, noise_, scale_);
+  const RowsCovariance noise = segment_noise(at.path, rows_of(observed.measured), noise_, scale_);
   IekfSettings settings = iekf_;
   settings.gate = std::numeric_limits<double>::infinity();
   return iekf_update(model_, before, inputs, observed, std::move(at), noise, settings).estimate.mean;
@@ -172,7 +172,7 @@ IekfUpdate DelayedState::learn(const InputHistory& inputs, const Segment& segmen
     start(segment.start, {});
   }
   time_ = segment.start;
-  const Pose2 end = compose(measured_, segment.measured);
+  const Pose2 end = compose(measured_, motion_of(segment.measured));
   clone();
   const Estimate before = joint_;
   advance(inputs, leg_of(segment));

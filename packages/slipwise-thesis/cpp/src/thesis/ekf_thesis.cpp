@@ -28,10 +28,10 @@ IekfUpdate EkfThesis::learn(const InputHistory& inputs, const Segment& segment) 
   covariance.diagonal() += settings_.process_std * settings_.process_std * prior_variance_;
   // 3. The gain, with J of (6.7), whose heading coupling is missing (erratum), or the exact one.
   const auto jacobian = segment_jacobian(settings_.jacobian, model_, at, segment);
-  const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, noise_, Eigen::Vector3d::Ones());
-  const Eigen::Matrix3d s = innovation_covariance(covariance, jacobian, noise);
+  const RowsCovariance noise = segment_noise(at.path, rows_of(segment.measured), noise_, Eigen::Vector3d::Ones());
+  const RowsCovariance s = innovation_covariance(covariance, jacobian, noise);
   // 4. and 5. No iteration, no gate.
-  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
+  const Rows residual = error_of(segment, at);
   estimate_.mean += linear_update(covariance, jacobian, noise) * residual;
   estimate_.covariance = covariance;
   return {.estimate = estimate_,

@@ -46,11 +46,11 @@ IekfUpdate FollowingEstimator::learn(const InputHistory& inputs, const Segment& 
   driven_.see(inputs, segment);
   follow();
   const SegmentPath path = integrate_segment(model(), running().mean, inputs, segment);
-  const Eigen::Matrix3d expected =
-      segment_noise(path, segment.measured, settings_.noise.shape, Eigen::Vector3d::Ones());
+  const RowsCovariance expected =
+      segment_noise(path, rows_of(segment.measured), settings_.noise.shape, Eigen::Vector3d::Ones());
   IekfUpdate update = estimator_.learn(inputs, segment);
-  noise_scale_.learn(linearize_segment(model(), running().mean, inputs, segment), running().covariance,
-                     segment.measured, expected.diagonal());
+  noise_scale_.learn(linearize_segment(model(), running().mean, inputs, segment), running().covariance, segment,
+                     expected.diagonal());
   estimator_.scale_noise(noise_scale_.value());
   return update;
 }

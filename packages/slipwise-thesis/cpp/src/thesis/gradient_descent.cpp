@@ -15,10 +15,10 @@ IekfUpdate GradientDescent::learn(const InputHistory& inputs, const Segment& seg
   const auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
   const auto jacobian = segment_jacobian(settings_.jacobian, model_, at, segment);
   const Eigen::VectorXd metric = estimate_.covariance.diagonal();
-  const Eigen::Matrix3d damped =
-      jacobian * metric.asDiagonal() * jacobian.transpose() + settings_.damping * Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();  // (6.4)
-  const Eigen::Vector3d solved = solve_innovation(damped, residual);
+  RowsCovariance damped = jacobian * metric.asDiagonal() * jacobian.transpose();
+  damped.diagonal().array() += settings_.damping;
+  const Rows residual = error_of(segment, at);  // (6.4)
+  const Rows solved = solve_innovation(damped, residual);
   estimate_.mean += settings_.learning_rate * metric.asDiagonal() * (jacobian.transpose() * solved);  // (6.12)
   return {.estimate = estimate_,
           .innovation = residual,

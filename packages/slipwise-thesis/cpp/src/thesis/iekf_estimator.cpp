@@ -14,7 +14,7 @@ IekfEstimator::IekfEstimator(MotionModel model, Estimate prior, const EstimatorS
 
 IekfUpdate IekfEstimator::learn(const InputHistory& inputs, const Segment& segment) {
   auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
-  const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, noise_, scale_);
+  const RowsCovariance noise = segment_noise(at.path, rows_of(segment.measured), noise_, scale_);
   IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, std::move(at), noise, settings_);
   estimate_ = update.estimate;
   return update;

@@ -47,15 +47,16 @@ SlidingModeObserver::SlidingModeObserver(const SlidingModeSettings& settings) : 
 
 SlidingModeUpdate SlidingModeObserver::learn(const InputHistory& wheels, const Segment& segment) {
   const double duration = segment.end - segment.start;
-  if (!(duration > 0.0) || !segment.measured.vector().allFinite()) {
+  if (!(duration > 0.0) || !motion_of(segment.measured).vector().allFinite()) {
     throw std::invalid_argument("a segment must end after it starts and have finite measurements");
   }
   const SegmentPath path = integrate_segment(slip_ratio_model(), linear_mean(), wheels, segment);
   const Pose2& predicted = path.poses.back();
-  if (std::abs(segment.measured.theta) > kLargestTurn || std::abs(predicted.theta) > kLargestTurn) {
+  const Pose2 measured = motion_of(segment.measured);
+  if (std::abs(measured.theta) > kLargestTurn || std::abs(predicted.theta) > kLargestTurn) {
     return {.surface = Eigen::Vector3d::Zero(), .used = false};
   }
-  const Eigen::Vector3d measured_twist = log(path.robot_motion(segment.measured)) / duration;
+  const Eigen::Vector3d measured_twist = log(path.robot_motion(measured)) / duration;
   const Eigen::Vector3d predicted_twist = log(predicted) / duration;
   const Eigen::Vector3d surface = surface_speeds(measured_twist - predicted_twist, settings_.wheel_separation);
   const Eigen::Vector3d rims = surface_speeds(mean_twist_at_wheels(path, duration), settings_.wheel_separation);

@@ -49,7 +49,7 @@ SlipRatioFilter::SlipRatioFilter(const SlipRatioFilterSettings& settings) : sett
 }
 
 SlipRatioUpdate SlipRatioFilter::learn(const InputHistory& wheels, const Segment& segment) {
-  if (!(segment.end > segment.start) || !segment.measured.vector().allFinite()) {
+  if (!(segment.end > segment.start) || !motion_of(segment.measured).vector().allFinite()) {
     throw std::invalid_argument("a segment must end after it starts and have finite measurements");
   }
   Eigen::Matrix3d prior = estimate_.covariance;
@@ -57,8 +57,8 @@ SlipRatioUpdate SlipRatioFilter::learn(const InputHistory& wheels, const Segment
   const auto at = linearize_slip_ratios(wheels, segment, slip(), settings_.wheel_separation);
   const Eigen::Matrix3d& h = at.by_slip_ratios;
   const Eigen::Matrix3d noise = slip_covariance(at.segment.path, settings_.noise) +
-                                pose_noise_covariance(at.segment.path, segment.measured, settings_.noise);
-  SlipRatioUpdate update{.innovation = segment.measured.vector() - at.segment.predicted.vector(),
+                                at.segment.path.measurement_noise(rows_of(segment.measured), settings_.noise);
+  SlipRatioUpdate update{.innovation = error_of(segment, at.segment),
                          .innovation_covariance = h * prior * h.transpose() + noise,
                          .nis = 0.0,
                          .weight = 1.0};

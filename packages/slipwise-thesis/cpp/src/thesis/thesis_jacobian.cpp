@@ -4,13 +4,14 @@
 
 #include <vector>
 
-#include "slipwise/segment/sensor_motion.hpp"
+#include "slipwise/sensor/sensor_motion.hpp"
 
 namespace slipwise {
 
 Eigen::Matrix<double, 3, Eigen::Dynamic> thesis_jacobian(const MotionModel& model, const SegmentLinearization& at,
                                                          const Segment& segment) {
   const Basis& basis = model.basis();
+  motion_of(segment.measured);
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian = at.by_parameter;
   jacobian.leftCols(model.slip_size()).setZero();
   std::vector<double> features(basis.size());
@@ -28,14 +29,14 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> thesis_jacobian(const MotionModel& mode
       jacobian.col(static_cast<Eigen::Index>(i)) += gamma.col(channel) * (features[i] * step.duration);
     }
   }
-  const Eigen::Matrix3d observed = sensor_by_robot(at.path.poses.back(), at.path.sensor);
+  const Eigen::Matrix3d observed = sensor_by_robot(at.path.poses.back(), at.path.sensor());
   jacobian.leftCols(model.slip_size()) = (observed * jacobian.leftCols(model.slip_size())).eval();
   return jacobian;
 }
 
-Eigen::Matrix<double, 3, Eigen::Dynamic> segment_jacobian(SegmentJacobian kind, const MotionModel& model,
-                                                          const SegmentLinearization& at, const Segment& segment) {
-  return kind == SegmentJacobian::Exact ? at.by_parameter : thesis_jacobian(model, at, segment);
+RowsJacobian segment_jacobian(SegmentJacobian kind, const MotionModel& model, const SegmentLinearization& at,
+                              const Segment& segment) {
+  return kind == SegmentJacobian::Exact ? at.by_parameter : RowsJacobian(thesis_jacobian(model, at, segment));
 }
 
 }  // namespace slipwise

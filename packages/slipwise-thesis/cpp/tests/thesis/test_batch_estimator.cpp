@@ -41,7 +41,7 @@ TEST_CASE("its estimate is the batch fit of all segments under the noise it was 
   for (const Segment& segment : drive.segments) {
     estimator.learn(drive.inputs, segment);
     const SegmentPath path = integrate_segment(model, Eigen::VectorXd::Zero(model.size()), drive.inputs, segment);
-    data.push_back({drive.inputs, segment, segment_noise(path, segment.measured, kNoise, kScale)});
+    data.push_back({drive.inputs, segment, segment_noise(path, rows_of(segment.measured), kNoise, kScale)});
   }
   estimator.scale_noise(kScale);
   const Estimate fit = batch_fit(model, wide_prior(model), data, {.huber = 1.5}).estimate;

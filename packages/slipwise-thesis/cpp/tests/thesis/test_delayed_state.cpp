@@ -86,7 +86,8 @@ TEST_CASE("with shared poses the filter is the batch solution of the whole drive
     y[i] = poses[static_cast<std::size_t>(i)].y;
   }
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const Segment segment{.start = kStamps[i - 1], .end = kStamps[i], .measured = between(poses[i - 1], poses[i])};
+    const Segment segment{
+        .start = kStamps[i - 1], .end = kStamps[i], .measured = measured_pose(between(poses[i - 1], poses[i]))};
     driven[static_cast<Eigen::Index>(i) - 1] =
         integrate_segment(model, Eigen::Vector2d::Zero(), inputs, segment).poses.back().x;
     filter.learn(inputs, segment);
@@ -150,7 +151,7 @@ TEST_CASE("a segment beyond the gate teaches nothing, and the next one begins ag
   const MotionModel model(named_basis("edd-2"), {});
   const MotionNoise noise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.005};
   auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.1), {.seed = 93, .windows = 20, .noise = noise});
-  drive.segments[10].measured.x += 50.0;
+  drive.segments[10].measured.front().z[0] += 50.0;
   EstimatorSettings settings;
   settings.noise = noise;
   DelayedState filter(model, {Eigen::VectorXd::Zero(2), 0.01 * Eigen::MatrixXd::Identity(2, 2)}, settings);

@@ -77,11 +77,12 @@ TEST_CASE("the thesis's filter is Table 6.1 line by line") {
     const auto at = linearize_segment(model, expected.mean, drive.inputs, segment);
     const Eigen::Matrix3Xd j = thesis_jacobian(model, at, segment);
     const Eigen::MatrixXd predicted = expected.covariance + 1e-4 * wide_prior(model).covariance;
-    const Eigen::Matrix3d noise = slip_covariance(at.path, kNoise) + pose_noise_covariance(segment.measured, kNoise);
+    const Eigen::Matrix3d noise =
+        slip_covariance(at.path, kNoise) + pose_noise_covariance(motion_of(segment.measured), kNoise);
     const Eigen::Matrix3Xd spread = j * predicted;
     const Eigen::Matrix3d s = spread * j.transpose() + noise;
     const Eigen::MatrixX3d k = spread.transpose() * s.inverse();
-    expected.mean += k * (segment.measured.vector() - at.predicted.vector());
+    expected.mean += k * (rows_of(segment.measured) - at.predicted);
     expected.covariance = predicted - k * spread;
   }
   CHECK((estimator.estimate().mean - expected.mean).norm() < 1e-10);

@@ -21,12 +21,12 @@ constexpr double kSpread = 0.05;  // of the true parameters, and of the prior
 std::vector<Segment> windows_of(const std::vector<Segment>& steps, std::size_t length, std::size_t stride) {
   std::vector<Pose2> poses{{}};
   for (const Segment& step : steps) {
-    poses.push_back(compose(poses.back(), step.measured));
+    poses.push_back(compose(poses.back(), motion_of(step.measured)));
   }
   std::vector<Segment> windows;
   for (std::size_t i = 0; i + length < poses.size(); i += stride) {
     const Pose2 moved = between(poses[i], poses[i + length]);
-    windows.push_back({.start = steps[i].start, .end = steps[i + length - 1].end, .measured = moved});
+    windows.push_back({.start = steps[i].start, .end = steps[i + length - 1].end, .measured = measured_pose(moved)});
   }
   return windows;
 }

@@ -16,7 +16,7 @@ const SlidingModeSettings kSettings{.wheel_separation = tests::kTestTrack};
 
 Segment exact_segment(const InputHistory& history, double start, const SlipRatios& slip) {
   Segment segment{.start = start, .end = start + 1.0};
-  segment.measured = linearize_slip_ratios(history, segment, slip, tests::kTestTrack).segment.predicted;
+  segment.measured.front().z = linearize_slip_ratios(history, segment, slip, tests::kTestTrack).segment.predicted;
   return segment;
 }
 
@@ -87,18 +87,18 @@ TEST_CASE("a parked side and a turn in place teach nothing about the slip that t
   const double c = tests::kTestTrack / 2.0;
   const std::vector<double> t{0.0}, v{0.4}, zero{0.0}, pivot{0.4 / c}, turn{1.0};
   const InputHistory one_side(t, v, zero, pivot), in_place(t, zero, zero, turn);
-  observer.learn(one_side, {.start = 1.0, .end = 2.0, .measured = {0.2, 0.1, 0.5}});
+  observer.learn(one_side, {.start = 1.0, .end = 2.0, .measured = measured_pose({0.2, 0.1, 0.5})});
   CHECK(observer.slip().left == 0.0);
   CHECK(observer.slip().right != 0.0);
   SlidingModeObserver other(kSettings);
-  other.learn(in_place, {.start = 1.0, .end = 2.0, .measured = {0.0, 0.3, 0.7}});
+  other.learn(in_place, {.start = 1.0, .end = 2.0, .measured = measured_pose({0.0, 0.3, 0.7})});
   CHECK(other.slip().angle == 0.0);
 }
 
 TEST_CASE("a segment of nearly half a turn is left out, and says so") {
   SlidingModeObserver observer(kSettings);
   const InputHistory history = tests::straight_inputs(1.0);
-  const auto update = observer.learn(history, {.start = 1.0, .end = 2.0, .measured = {0.1, 0.1, 3.1}});
+  const auto update = observer.learn(history, {.start = 1.0, .end = 2.0, .measured = measured_pose({0.1, 0.1, 3.1})});
   CHECK_FALSE(update.used);
   CHECK(observer.slip().vector() == Eigen::Vector3d::Zero());
 }

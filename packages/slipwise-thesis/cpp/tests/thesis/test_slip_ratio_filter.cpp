@@ -24,7 +24,7 @@ TEST_CASE("the predicted chart has the derivative that is stated") {
   const Segment& segment = drive.segments.front();
   const auto chart = [&](const Eigen::VectorXd& slip) -> Eigen::VectorXd {
     const auto at = linearize_slip_ratios(drive.inputs, segment, SlipRatios::from_vector(slip), tests::kTestTrack);
-    return at.segment.predicted.vector();
+    return at.segment.predicted;
   };
   const auto at = linearize_slip_ratios(drive.inputs, segment, tests::kTestSlip, tests::kTestTrack);
   const auto numeric = tests::finite_difference(chart, tests::kTestSlip.vector(), 0.1);
@@ -69,7 +69,7 @@ TEST_CASE("the random walk lets the filter follow slip that changes") {
   for (int i = 0; i < 80; ++i) {
     const SlipRatios slip = i < 60 ? SlipRatios{} : SlipRatios{.left = 0.2, .right = 0.2, .angle = -0.1};
     Segment segment{.start = 1.0 + i, .end = 2.0 + i};
-    segment.measured = linearize_slip_ratios(history, segment, slip, tests::kTestTrack).segment.predicted;
+    segment.measured.front().z = linearize_slip_ratios(history, segment, slip, tests::kTestTrack).segment.predicted;
     following.learn(history, segment);
     stiff.learn(history, segment);
   }
@@ -83,7 +83,7 @@ TEST_CASE("turning in place teaches both slip ratios and no slip angle") {
   const std::vector<double> t{0.0}, zero{0.0}, turn{0.8};
   const InputHistory history(t, zero, zero, turn);
   for (int i = 0; i < 20; ++i) {
-    Segment segment{.start = 1.0 + i, .end = 2.0 + i, .measured = {0.0, 0.0, 0.6}};
+    Segment segment{.start = 1.0 + i, .end = 2.0 + i, .measured = measured_pose({0.0, 0.0, 0.6})};
     filter.learn(history, segment);
   }
   CHECK(filter.slip().left == doctest::Approx(0.25).epsilon(0.05));
@@ -94,7 +94,7 @@ TEST_CASE("turning in place teaches both slip ratios and no slip angle") {
 TEST_CASE("a pose jump counts for less and leaves the slip possible") {
   SlipRatioFilter filter(constant_slip());
   const InputHistory history = tests::straight_inputs(1.0);
-  const auto update = filter.learn(history, {.start = 1.0, .end = 2.0, .measured = {-40.0, 25.0, 1.0}});
+  const auto update = filter.learn(history, {.start = 1.0, .end = 2.0, .measured = measured_pose({-40.0, 25.0, 1.0})});
   CHECK(update.weight < 0.1);
   CHECK(bounded(filter.slip()).vector() == filter.slip().vector());
   CHECK(filter.estimate().covariance.allFinite());
@@ -122,7 +122,7 @@ TEST_CASE("senseless settings and segments are refused") {
   const InputHistory history = tests::straight_inputs(1.0);
   CHECK_THROWS_AS(filter.learn(history, {.start = 2.0, .end = 1.0}), std::invalid_argument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_AS(filter.learn(history, {.start = 1.0, .end = 2.0, .measured = {nan, 0.0, 0.0}}),
+  CHECK_THROWS_AS(filter.learn(history, {.start = 1.0, .end = 2.0, .measured = measured_pose({nan, 0.0, 0.0})}),
                   std::invalid_argument);
 }
 

@@ -19,7 +19,7 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> thesis_jacobian(const MotionModel& mode
                                                          const Segment& segment);
 
 /// The one that `kind` names.
-Eigen::Matrix<double, 3, Eigen::Dynamic> segment_jacobian(SegmentJacobian kind, const MotionModel& model,
-                                                          const SegmentLinearization& at, const Segment& segment);
+RowsJacobian segment_jacobian(SegmentJacobian kind, const MotionModel& model, const SegmentLinearization& at,
+                              const Segment& segment);
 
 }  // namespace slipwise

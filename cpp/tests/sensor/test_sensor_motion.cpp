@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The motion of a sensor that a robot carries: its laws, its derivatives, and what it does to slip noise.
-#include "slipwise/segment/sensor_motion.hpp"
+#include "slipwise/sensor/sensor_motion.hpp"
 
 #include <doctest/doctest.h>
 
@@ -41,8 +41,9 @@ TEST_CASE("the robot's motion that a sensor tells is the one that moved the sens
     for (const Pose2& sensor_extrinsics : kMounts) {
       SegmentPath path;
       path.poses = {Pose2{}, robot};
-      path.sensor = sensor_extrinsics;
-      CHECK((path.robot_motion(path.sensor_motion()).vector() - robot.vector()).norm() < 1e-12);
+      path.measured = measured_pose({}, sensor_extrinsics);
+      path.sights = sights_until(1, {.start = 0.0, .end = 1.0});
+      CHECK((path.robot_motion(Pose2::from_vector(path.rows())).vector() - robot.vector()).norm() < 1e-12);
     }
   }
 }
@@ -72,7 +73,7 @@ TEST_CASE("slip noise is the robot's: a sensor ahead of the axle turns yaw noise
   Segment segment{.start = 1.0, .end = 1.5};
   const MotionNoise noise{.psd_time = {0.0, 0.0, 1e-3}};
   const Eigen::Matrix3d robot = slip_covariance(integrate_segment(model, Eigen::VectorXd(0), inputs, segment), noise);
-  segment.sensor = {2.0, 0.0, 0.0};
+  segment.measured.front().sensor.place = {2.0, 0.0, 0.0};
   const Eigen::Matrix3d sensor = slip_covariance(integrate_segment(model, Eigen::VectorXd(0), inputs, segment), noise);
   CHECK(robot(1, 1) == doctest::Approx(0.0));
   CHECK(sensor(2, 2) == doctest::Approx(robot(2, 2)));

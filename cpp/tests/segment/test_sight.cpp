@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments between positions: courses of a path's own chords, their derivatives, and the noise of all four positions.
-#include "slipwise/segment/course.hpp"
+// What sensors see along a path: poses, courses of its own chords, turns; derivatives, and the noise of what was
+// measured.
+#include "slipwise/segment/sight.hpp"
 
 #include <doctest/doctest.h>
 
@@ -16,7 +17,7 @@
 #include "sample_drives.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
-#include "slipwise/segment/sensor_motion.hpp"
+#include "slipwise/sensor/sensor_motion.hpp"
 
 namespace slipwise {
 namespace {
@@ -24,15 +25,32 @@ namespace {
 constexpr double kStep = 1e-3;
 const std::vector<std::string> kSpeed{"V"};
 
+PositionSensor& positions_of(Segment& segment) {
+  return std::get<PositionSensor>(segment.measured.front().sensor.kind);
+}
+
+Measured turn_by_gyro() { return {.sensor = {.kind = YawRateSensor{.std = 0.02}}, .z = Rows::Zero(1)}; }
+
 Segment between_positions() {
   Segment segment{.start = 3.0131, .end = 5.0177};
-  segment.chords = {Chord{.from = 2.1177, .offset = 0.0}, Chord{.from = 4.2093, .offset = 0.3}};
+  segment.measured.front().sensor.kind =
+      PositionSensor{.chords = {Chord{.from = 2.1177, .offset = 0.0}, Chord{.from = 4.2093, .offset = 0.3}}};
   return segment;
 }
 
 Segment by_gyro() {
   Segment segment = between_positions();
-  segment.gyro_std = 0.02;
+  positions_of(segment).turn = false;
+  segment.measured.front().z = Eigen::Vector2d::Zero();
+  segment.measured.push_back(turn_by_gyro());
+  return segment;
+}
+
+/// A pose, and beside it what a gyro says, whose stamps are late.
+Segment pose_and_late_gyro() {
+  Segment segment{.start = 3.0131, .end = 5.0177};
+  segment.measured.push_back(turn_by_gyro());
+  segment.measured.back().sensor.clock = 0.1117;
   return segment;
 }
 
@@ -45,7 +63,7 @@ Eigen::VectorXd with_slip(const Basis& basis, const Eigen::VectorXd& others) {
 double derivative_error(const MotionModel& model, const Eigen::VectorXd& parameters, const Segment& segment,
                         const InputHistory& inputs) {
   const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
-    return integrate_segment(model, p, inputs, segment).sensor_motion().vector();
+    return integrate_segment(model, p, inputs, segment).rows();
   };
   const auto numeric = tests::finite_difference(value, parameters, kStep);
   return tests::jacobian_error(linearize_segment(model, parameters, inputs, segment).by_parameter, numeric, 0.1);
@@ -60,11 +78,11 @@ TEST_CASE("courses have the exact derivative by slip, by the drive, by clocks an
   others << std::log(0.31), std::log(0.22), std::log(0.0827), std::log(0.1133), 0.93, 1.12, 0.21, 0.34, std::log(1.31),
       std::log(0.82), 0.0231, 0.3, -0.2, 0.0;
   Segment overlapping = between_positions();
-  overlapping.chords->back().from = 2.5113;  // before the segment's start
+  positions_of(overlapping).chords[1].from = 2.5113;  // before the segment's start
   for (const tests::SampleDrive& drive : tests::sample_drives()) {
     CAPTURE(drive.name);
     const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
-    for (const Segment& segment : {between_positions(), overlapping, by_gyro()}) {
+    for (const Segment& segment : {between_positions(), overlapping, by_gyro(), pose_and_late_gyro()}) {
       CHECK(derivative_error(model, with_slip(basis, others), segment, inputs) < 1e-5);
       CHECK(linearize_slip(model, with_slip(basis, others), inputs, segment)
                 .by_parameter.isApprox(linearize_segment(model, with_slip(basis, others), inputs, segment)
@@ -74,30 +92,29 @@ TEST_CASE("courses have the exact derivative by slip, by the drive, by clocks an
   }
 }
 
-TEST_CASE("the chart of a course is made of where the antenna is at four fixed moments") {
+TEST_CASE("what sensors see is made of where they are at fixed moments, each by its own clock") {
   const Basis basis = named_basis("drive-5");
-  Segment segment = between_positions();
-  segment.sensor = {0.4, -0.1, 0.0};
+  const Pose2 place{0.4, -0.1, 0.0};
   const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
   const MotionModel model(basis, {});
   const Eigen::VectorXd slip = tests::sample_slip(basis, 5);
-  const SegmentPath path = integrate_segment(model, slip, inputs, segment);
-  const auto at = [&](double t) {
-    const Segment until{.start = 2.1177, .end = t, .sensor = segment.sensor};
-    const Pose2 seen = integrate_segment(model, slip, inputs, until).sensor_motion();
-    return Eigen::Vector2d(seen.x, seen.y);
+  const auto seen_at = [&](double t) -> Eigen::Vector3d {
+    const Segment until{.start = 2.1177, .end = t, .measured = measured_pose({}, place)};
+    return integrate_segment(model, slip, inputs, until).rows();
   };
-  const CoursePositions wanted{Eigen::Vector2d::Zero(), at(3.0131), at(4.2093), at(5.0177)};
-  const CoursePositions found = path.course_positions();
-  for (std::size_t i = 0; i < kCoursePoints; ++i) {
-    CHECK((found[i] - wanted[i]).norm() < 1e-12);
-  }
-  const Eigen::Vector2d first = wanted[kStart];
-  const Eigen::Vector2d last = wanted[kEnd] - wanted[kEndChord];
-  const Pose2 motion = path.sensor_motion();
-  CHECK(std::hypot(motion.x, motion.y) == doctest::Approx((wanted[kEnd] - wanted[kStart]).norm()));
+  Segment segment = between_positions();
+  segment.measured.front().sensor.place = place;
+  segment.measured.push_back(turn_by_gyro());
+  segment.measured.back().sensor.clock = 0.1117;
+  const Rows found = integrate_segment(model, slip, inputs, segment).rows();
+  const auto chord = [&](double from, double to) -> Eigen::Vector2d { return (seen_at(to) - seen_at(from)).head<2>(); };
+  const Eigen::Vector2d first = seen_at(3.0131).head<2>();
+  const Eigen::Vector2d last = chord(4.2093, 5.0177);
+  CHECK(found.size() == 4);
+  CHECK(found.head<2>().norm() == doctest::Approx(chord(3.0131, 5.0177).norm()));
   const double turn = std::atan2(last.y(), last.x()) + 0.3 - std::atan2(first.y(), first.x());
-  CHECK(std::remainder(motion.theta - turn, 6.283185307179586) == doctest::Approx(0.0).epsilon(1e-9));
+  CHECK(std::remainder(found[2] - turn, 6.283185307179586) == doctest::Approx(0.0).epsilon(1e-9));
+  CHECK(found[3] == doctest::Approx((seen_at(5.0177 - 0.1117) - seen_at(3.0131 - 0.1117)).z()));
 }
 
 TEST_CASE("a side slip that is always the same does not move courses, and neither does how an antenna is turned") {
@@ -106,40 +123,43 @@ TEST_CASE("a side slip that is always the same does not move courses, and neithe
   const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
   const Segment segment = between_positions();
   Segment turned = segment;
-  turned.sensor.theta = 0.7;
+  turned.measured.front().sensor.place.theta = 0.7;
   const double crab = 0.2;
   const Eigen::Vector2d straight(0.0, 0.0);
   const Eigen::Vector2d sideways(std::cos(crab) - 1.0, std::sin(crab));
-  const Eigen::Vector3d wanted = integrate_segment(model, straight, inputs, segment).sensor_motion().vector();
-  CHECK((integrate_segment(model, sideways, inputs, segment).sensor_motion().vector() - wanted).norm() < 1e-9);
-  CHECK((integrate_segment(model, straight, inputs, turned).sensor_motion().vector() - wanted).norm() < 1e-9);
+  const Eigen::Vector3d wanted = integrate_segment(model, straight, inputs, segment).rows();
+  CHECK((integrate_segment(model, sideways, inputs, segment).rows() - wanted).norm() < 1e-9);
+  CHECK((integrate_segment(model, straight, inputs, turned).rows() - wanted).norm() < 1e-9);
 }
 
 TEST_CASE("the noise of four positions is that of seeded draws, and of one error where two of them are one") {
   const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
   const MotionModel model(Basis("none", {}, {}, {}), {});
   Segment joined = between_positions();
-  joined.chords->back().from = joined.start;
+  positions_of(joined).chords[1].from = joined.start;
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   for (const Segment& segment : {between_positions(), joined}) {
     const SegmentPath path = integrate_segment(model, Eigen::VectorXd(0), inputs, segment);
     const MotionNoise noise{.pose_std_xy = 0.01, .pose_std_yaw = 1e-3};
-    const Eigen::Vector3d truth = path.sensor_motion().vector();
+    const Eigen::Vector3d truth = path.rows();
+    const Sight& sight = path.sights.front();
     constexpr int kDraws = 20000;
     Eigen::Matrix3d squares = 1e-6 * Eigen::Matrix3d::Identity() * kDraws;
     for (int i = 0; i < kDraws; ++i) {
-      CoursePositions points = path.course_positions();
-      for (Eigen::Vector2d& point : points) {
-        point += 0.01 * Eigen::Vector2d(normal(random), normal(random));
+      auto robot = sight.robot(path.poses);
+      for (Pose2& pose : robot) {
+        pose.x += 0.01 * normal(random);
+        pose.y += 0.01 * normal(random);
       }
-      if (path.course->at[kEndChord] == path.course->at[kStart]) {
-        points[kEndChord] = points[kStart];
+      if (sight.at[kEndChord] == sight.at[kStart]) {
+        robot[kEndChord] = robot[kStart];
       }
-      const Eigen::Vector3d error = course_motion(points, *path.course, 0.0).vector() - truth;
+      const View view{.robot = robot, .stamps = sight.stamps, .measured = truth};
+      const Eigen::Vector3d error = see(path.measured.front().sensor, view).z - truth;
       squares += error * error.transpose();
     }
-    const Eigen::Matrix3d stated = pose_noise_covariance(path, path.sensor_motion(), noise);
+    const Eigen::Matrix3d stated = path.measurement_noise(truth, noise);
     const Eigen::Matrix3d sampled = squares / kDraws;
     CHECK((sampled - stated).norm() < 0.05 * stated.norm());
   }
@@ -150,14 +170,13 @@ TEST_CASE("where a gyro measures, the turn is the robot's own with the gyro's no
   const MotionModel model(Basis("none", {}, {}, {}), {});
   const Eigen::VectorXd none(0);
   const SegmentPath path = integrate_segment(model, none, inputs, by_gyro());
-  const Pose2 found = path.sensor_motion();
-  const Pose2 courses = integrate_segment(model, none, inputs, between_positions()).sensor_motion();
-  const Pose2 robot = integrate_segment(model, none, inputs, {.start = 3.0131, .end = 5.0177}).sensor_motion();
-  CHECK(found.x == doctest::Approx(courses.x));
-  CHECK(found.y == doctest::Approx(courses.y));
-  CHECK(found.theta == doctest::Approx(robot.theta));
+  const Rows found = path.rows();
+  const Rows courses = integrate_segment(model, none, inputs, between_positions()).rows();
+  const Rows robot = integrate_segment(model, none, inputs, {.start = 3.0131, .end = 5.0177}).rows();
+  CHECK(found.head<2>().isApprox(courses.head<2>()));
+  CHECK(found[2] == doctest::Approx(robot[2]));
   const MotionNoise noise{.pose_std_xy = 0.01, .pose_std_yaw = 1e-3};
-  const Eigen::Matrix3d covariance = pose_noise_covariance(path, found, noise);
+  const Eigen::Matrix3d covariance = path.measurement_noise(found, noise);
   CHECK(covariance(2, 2) == doctest::Approx(4e-4));
   CHECK(covariance.block<2, 1>(0, 2).isZero(0.0));
   const MotionNoise turning{.psd_time = {0.0, 0.0, 1e-4}};
