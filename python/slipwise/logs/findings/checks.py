@@ -141,8 +141,14 @@ def findings_of(
         unknown_after: an input is unknown once it is older than this [s].
         sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
     """
+    seen = seen_in(log, input_name, unknown_after, sensor_yaw)
+    return (*findings_in(seen), *findings_of_log(WholeLog(log, input_name, unknown_after)))
+
+
+def seen_in(log: Log, input_name: str, unknown_after: float, sensor_yaw: float = 0.0) -> Seen:
+    """Return poses against inputs of a log; arguments as of `findings_of`."""
     runs = [run for run in log.runs if has_input(run, input_name)]
-    seen = Seen(
+    return Seen(
         evidence=evidence_of(runs, unknown_after),
         runs=[run.name for run in runs],
         input_name=input_name,
@@ -150,7 +156,6 @@ def findings_of(
         gyro=False,
         sensor_yaw=sensor_yaw,
     )
-    return (*findings_in(seen), *findings_of_log(WholeLog(log, input_name, unknown_after)))
 
 
 def findings_of_log(whole: WholeLog) -> tuple[Finding, ...]:

@@ -25,7 +25,10 @@ from sample_logs import Drive, steady_run
 
 from slipwise import _core
 from slipwise.logs import Log, LogOptions, Poses, open_log
-from slipwise.logs.findings.checks import findings_of
+from slipwise.logs.findings.checks import findings_in, findings_of, looked_at, seen_in
+from slipwise.logs.findings.command_stops import CommandTimeout
+from slipwise.logs.findings.seen import WholeLog
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.time_span import cut_to_span
 
 HALF = 30.0  # s
@@ -186,6 +189,7 @@ def test_no_real_robot_contradicts_its_inputs(real_log_dir: Path) -> None:
         for end in (*np.arange(40.0, last, 20.0), last + 1.0):
             part = cut_to_span(log, None, float(end))
             for name in ("command", "wheel"):
-                spoilt = [each.sentence for each in findings_of(part, name) if each.spoils]
-                found += [(path.name, end, name, sentence) for sentence in spoilt]
+                ended = looked_at(WholeLog(part, name), (CommandTimeout(),))
+                every = (*findings_in(seen_in(part, name, UNKNOWN_AFTER)), *ended)
+                found += [(path.name, end, name, each.sentence) for each in every if each.spoils]
     assert found == []
