@@ -157,8 +157,9 @@ void BranchBank::restart(const Estimate& known) {
 }
 
 void BranchBank::correct_leader(const Estimate& better) {
-  if (follow()) {
-    branches_[branches_.heaviest()].estimate = better;
+  const auto led_by = std::ranges::find(branches_.keys(), led_by_, &Branch::number);
+  if (led_by != branches_.keys().end()) {
+    led_by->estimate = better;
   }
 }
 

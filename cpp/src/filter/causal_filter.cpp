@@ -217,8 +217,11 @@ IekfUpdate CausalFilter::learn(const InputHistory& inputs, const Segment& segmen
   refitted_ = false;
   IekfUpdate update = branches_.follow() ? follow_branches(inputs, segment)
                                          : state_.learn(model_, inputs, segment, settings_.noise, settings_.iekf);
-  // A refit takes all parameters for constant, which a force is not.
-  if (!full_ && !force_.learned() && !update.at.by_parameter.isZero(0.0)) {
+  // The branch that leads is fitted again over the segments since it came to lead. A refit takes all parameters for
+  // constant, which a force is not.
+  if (branches_.leader_changed()) {
+    start_refits(branches_.leader());
+  } else if (!full_ && !force_.learned() && !update.at.by_parameter.isZero(0.0)) {
     keep(inputs, segment);
   }
   if (settings_.noise.adapt) {
@@ -232,7 +235,6 @@ IekfUpdate CausalFilter::learn(const InputHistory& inputs, const Segment& segmen
   return update;
 }
 
-/// The heaviest branch alone is fitted again, over the segments in which it led.
 IekfUpdate CausalFilter::follow_branches(const InputHistory& inputs, const Segment& segment) {
   const BranchSegment driven{.inputs = inputs,
                              .segment = segment,
@@ -240,11 +242,7 @@ IekfUpdate CausalFilter::follow_branches(const InputHistory& inputs, const Segme
                              .unit = slip_prior_std(model_.basis(), speeds_, 1.0),
                              .speeds = speeds_,
                              .alike = stated_.head(model_.slip_size()).cwiseAbs2().maxCoeff()};
-  IekfUpdate update = branches_.learn(model_, driven, settings_, state_);
-  if (branches_.leader_changed()) {
-    start_refits(branches_.leader());
-  }
-  return update;
+  return branches_.learn(model_, driven, settings_, state_);
 }
 
 RowsCovariance prediction_covariance(const SegmentLinearization& at,

@@ -16,7 +16,7 @@ namespace slipwise {
 /// All parameters, had slip jumped when it was born and not since.
 struct Branch {
   Estimate estimate;
-  std::size_t number;  ///< in the order of births; the first has 0
+  std::size_t number;  ///< in the order of births
 };
 
 /// Slip of one direction: its terms, and how far each jumps where the main one jumps by 1.
@@ -63,7 +63,7 @@ class BranchBank {
 
   /// Nothing but this is known.
   void restart(const Estimate& known);
-  /// What the heaviest branch knows is known better.
+  /// What the branch knows that led last is known better, if it is still there.
   void correct_leader(const Estimate& better);
   /// The same data under another prior of slip; false if that of the heaviest branch cannot be changed. Others stay
   /// where theirs cannot.
