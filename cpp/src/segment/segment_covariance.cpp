@@ -20,7 +20,7 @@ class RowsBySteps {
   using ByTangent = Eigen::Matrix<double, kRows, 3, Eigen::ColMajor, kMost, 3>;
   using Covariance = Eigen::Matrix<double, kRows, kRows, Eigen::ColMajor, kMost, kMost>;
 
-  explicit RowsBySteps(const SegmentPath& path) : path_(path), rows_(0) {
+  explicit RowsBySteps(const SegmentPath& path) : path_(path) {
     const std::vector<Seen> seen = path.seen();
     for (std::size_t k = 0; k < seen.size(); ++k) {
       for (std::size_t i = 0; std::cmp_less(i, path.sights[k].stamps.size()); ++i) {
@@ -65,7 +65,7 @@ class RowsBySteps {
 
   const SegmentPath& path_;
   std::vector<Looked> looked_;
-  Eigen::Index rows_;
+  Eigen::Index rows_ = 0;
   std::size_t next_ = 0;
   Eigen::Matrix2d heading_ = Eigen::Matrix2d::Identity();
 };
@@ -81,8 +81,8 @@ std::array<double, 3> motion_of(const ActuatorStep& step) {
 template <int kRows>
 RowsCovariance summed_covariance(const SegmentPath& path, const MotionNoise& noise) {
   RowsBySteps<kRows> seen(path);
-  using Square = typename RowsBySteps<kRows>::Covariance;
-  using ByTangent = typename RowsBySteps<kRows>::ByTangent;
+  using Square = RowsBySteps<kRows>::Covariance;
+  using ByTangent = RowsBySteps<kRows>::ByTangent;
   Square covariance = Square::Zero(seen.rows(), seen.rows());
   ByTangent constant = ByTangent::Zero(seen.rows(), 3);  // column c: of a slip that is the same fraction all along
   for (std::size_t k = 0; k < path.tangents.size(); ++k) {
