@@ -24,6 +24,12 @@ using namespace nb::literals;
 namespace slipwise::bindings {
 namespace {
 
+/// As a chart (x, y, theta), whatever sensors measure.
+ExpectedPose as_chart(const ExpectedPose& expected, const Segment& segment) {
+  const Directions directions = directions_of(segment.measured);
+  return {chart_of(directions, expected.pose), chart_covariance(directions, expected.covariance)};
+}
+
 void bind_settings(nb::module_& m) {
   nb::class_<IekfSettings>(m, "IekfSettings")
       .def(nb::init<>())
@@ -169,7 +175,7 @@ void bind_estimate(nb::module_& m) {
       [](const SegmentLinearization& at, const Eigen::MatrixXd& parameters, const MotionNoise& shape,
          const Eigen::Vector3d& scale) {
         check_square(parameters, at.by_parameter.cols(), "the covariance of a prediction's parameters");
-        return Eigen::MatrixXd(prediction_covariance(at, parameters, shape, scale));
+        return chart_covariance(at.path.directions(), prediction_covariance(at, parameters, shape, scale));
       },
       "at"_a, "parameters"_a, "shape"_a, "scale"_a, "Covariance of a predicted chart (x, y, theta), [3, 3].");
   nb::class_<CorrelatedPair>(m, "CorrelatedPair", "Two parameters whose errors go together.")
@@ -309,15 +315,16 @@ void bind_slip_disturbance(nb::module_& m) {
       .def(
           "predict",
           [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
-             const SlipNow& now,
-             const Segment& segment) { return slip.predict(posterior, now, {.inputs = inputs, .segment = segment}); },
+             const SlipNow& now, const Segment& segment) {
+            return as_chart(slip.predict(posterior, now, {.inputs = inputs, .segment = segment}), segment);
+          },
           "posterior"_a, "inputs"_a, "now"_a, "segment"_a, "Predicts a segment from where slip is.")
       .def_prop_ro("law", &DisturbanceFilter::law);
   m.def(
       "predict_ahead",
       [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
          const SlipNow& now, const Segment& segment, const MixedAhead& ahead) {
-        return predict_ahead(slip, posterior, now, {.inputs = inputs, .segment = segment}, ahead);
+        return as_chart(predict_ahead(slip, posterior, now, {.inputs = inputs, .segment = segment}, ahead), segment);
       },
       "slip"_a, "posterior"_a, "inputs"_a, "now"_a, "segment"_a, "ahead"_a,
       "Where a segment over several surfaces is expected to end.");
