@@ -44,7 +44,7 @@ int main() {
     const std::array<double, 2> t{0.0, now}, v{0.3, 1.0}, vy{0.0, 0.0}, omega{0.0, rate};
     const slipwise::InputHistory commands = slipwise::limited_inputs({t, v, vy, omega}, learned_limits());
     const auto at = slipwise::linearize_segment(model, parameters, commands, {.start = now, .end = now + ahead});
-    const slipwise::Pose2 pose = at.predicted;  // at.by_parameter is its derivative by the parameters
+    const slipwise::Pose2 pose = at.pose();  // at.by_parameter is its derivative by the parameters
     const double miss = std::hypot(pose.x - goal_x, pose.y - goal_y);
     std::printf("%.1f rad/s -> x %.4f m, y %.4f m, yaw %.4f rad, %.2f m from the goal\n", rate, pose.x, pose.y,
                 pose.theta, miss);

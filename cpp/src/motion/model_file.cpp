@@ -42,7 +42,7 @@ double& limit_of(CommandLimits& limits, const std::string& name) {
 
 }  // namespace
 
-LearnedModel ModelFile::model() const {
+RolloutModel ModelFile::model() const {
   const std::size_t size = rows.size();
   if (covariance.size() != size * size) {
     throw std::invalid_argument(std::to_string(size) + " parameters with a covariance of " +
@@ -51,7 +51,7 @@ LearnedModel ModelFile::model() const {
   if (!limit_gains.empty() && limit_gains.size() != kGains) {
     throw std::invalid_argument("limit_gains are of speed and yaw rate: two numbers");
   }
-  LearnedModel found;
+  RolloutModel found;
   if (!limit_gains.empty()) {
     found.limits.gain_v = limit_gains.front();
     found.limits.gain_omega = limit_gains.back();

@@ -38,7 +38,7 @@ ModelFile sample() {
 }
 
 TEST_CASE("parameters of the robot are kept in their order, those of its sensors are not") {
-  const LearnedModel model = sample().model();
+  const RolloutModel model = sample().model();
   REQUIRE(model.parameters.size() == model.motion.size());
   CHECK(model.parameters.isApprox((Eigen::VectorXd(6) << -0.1, -0.3, -1.0, -1.5, -2.0, -2.5).finished()));
   CHECK(model.covariance(5, 3) == 5.0 * 13.0 + 3.0);

@@ -13,7 +13,7 @@ int main(int count, char** arguments) {
     std::ifstream stream(count > 1 ? arguments[1] : "");
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const slipwise::ModelFile file = slipwise::ModelFile::parse(text);
-    const slipwise::LearnedModel model = file.model();
+    const slipwise::RolloutModel model = file.model();
     std::printf("%s %d %d %.17g\n", file.input.c_str(), file.good ? 1 : 0, static_cast<int>(model.motion.size()),
                 model.motion.learned().wheelbase);
     for (const auto* axis : {&model.limits.speed, &model.limits.yaw_rate, &model.limits.side}) {

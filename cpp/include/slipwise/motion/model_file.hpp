@@ -13,7 +13,7 @@
 namespace slipwise {
 
 /// A learned model of base_link, by the clock of its inputs, as rollouts take it.
-struct LearnedModel {
+struct RolloutModel {
   MotionModel motion;
   Eigen::VectorXd parameters;
   Eigen::MatrixXd covariance;  ///< of the parameters
@@ -67,7 +67,7 @@ struct ModelFile {
 
   /// \throws std::invalid_argument when parts contradict each other, a term or a limit is not known, or the model takes
   /// throttle and steering, or pushes the robot by its heading over the map: rollouts know neither.
-  LearnedModel model() const;
+  RolloutModel model() const;
 };
 
 }  // namespace slipwise

@@ -13,7 +13,7 @@
 
 namespace slipwise_nav2 {
 
-inline slipwise::LearnedModel default_model() {
+inline slipwise::RolloutModel default_model() {
 #ifdef SLIPWISE_PARAMETERS
   const std::vector<std::string> lon{SLIPWISE_TERMS_LON}, lat{SLIPWISE_TERMS_LAT}, ang{SLIPWISE_TERMS_ANG};
   const slipwise::MotionModel model({"learned", lon, lat, ang}, {.dynamics = SLIPWISE_HAS_DYNAMICS,

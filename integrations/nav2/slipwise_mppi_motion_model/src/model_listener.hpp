@@ -21,7 +21,7 @@ namespace slipwise_nav2 {
 
 /// A model, and its program for a control period.
 struct Drive {
-  slipwise::LearnedModel model;
+  slipwise::RolloutModel model;
   std::optional<slipwise::RolloutProgram> program = std::nullopt;
 
   const slipwise::RolloutProgram& at(double period) {
@@ -39,7 +39,7 @@ class ModelListener {
  public:
   using Message = slipwise_msgs::msg::MotionModel;
 
-  ModelListener(const std::string& name, const std::string& topic, slipwise::LearnedModel by_default)
+  ModelListener(const std::string& name, const std::string& topic, slipwise::RolloutModel by_default)
       : topic_(topic), default_(std::move(by_default)), node_(std::make_shared<rclcpp::Node>(name)) {
     subscription_ = node_->create_subscription<Message>(topic, rclcpp::QoS(1).reliable().transient_local(),
                                                         [this](const Message& message) { hear(message); });
@@ -91,7 +91,7 @@ class ModelListener {
   }
 
   /// Compiles it here, and not in the control loop.
-  void hand_on(slipwise::LearnedModel model) {
+  void hand_on(slipwise::RolloutModel model) {
     auto drive = std::make_unique<Drive>(Drive{std::move(model)});
     if (const double period = period_.load(std::memory_order_relaxed); period > 0.0) {
       drive->at(period);
@@ -109,7 +109,7 @@ class ModelListener {
   }
 
   std::string topic_, why_;
-  slipwise::LearnedModel default_;
+  slipwise::RolloutModel default_;
   slipwise::Handoff<Drive> handoff_;
   std::atomic<double> period_ = 0.0;
   std::atomic<bool> stopped_ = false;
