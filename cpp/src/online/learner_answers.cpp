@@ -166,7 +166,7 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
       input_covariances(motion.model, motion.estimate.mean, ahead, stream_.spread_ahead(horizon, inputs), path.t);
   for (std::size_t i = 0; i < along.size(); ++i) {
     path.students.push_back(errors_.student(stream_.newest(), path.t[i] - path.start, structure));
-    path.poses.push_back(along[i].pose);
+    path.poses.emplace_back(along[i].pose);
     path.covariances.emplace_back(path.students.back().inflation * along[i].covariance + of_inputs[i]);
   }
   path.start = clock_.stamp(path.start);

@@ -51,6 +51,7 @@ def parameters(cache: Path) -> list[str]:
 def slipwise_ros(python: Path, cache: Path) -> Iterator[subprocess.Popen[str]]:
     """Run the node as `ros2 run slipwise_ros live` does."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")} | ROS
+    environment["PYTHONFAULTHANDLER"] = "1"
     with subprocess.Popen(
         [str(python), "-c", START, *parameters(cache)], env=environment, stderr=subprocess.PIPE, text=True
     ) as node:
@@ -58,6 +59,15 @@ def slipwise_ros(python: Path, cache: Path) -> Iterator[subprocess.Popen[str]]:
             yield node
         finally:
             node.kill()
+
+
+def ended(node: subprocess.Popen[str]) -> tuple[int, str]:
+    """Return the exit code of an interrupted node, and where its threads stand if it does not end."""
+    try:
+        return node.wait(30.0), ""
+    except subprocess.TimeoutExpired:
+        node.send_signal(signal.SIGABRT)
+        return node.wait(10.0), node.stderr.read() if node.stderr else ""
 
 
 def learned(cache: Path) -> Any:
@@ -134,7 +144,7 @@ def test_a_managed_node_learns_what_calibrate_does_and_answers(ros_python: Path,
         assert peer.ask("change", to="cleanup")
         assert peer.ask("state") == "unconfigured"
         node.send_signal(signal.SIGINT)
-        assert node.wait(10.0) == 0
+        assert ended(node) == (0, "")
 
 
 def beginning(lines: Path) -> Path:
