@@ -7,8 +7,13 @@ Deactivated, it keeps what it learned; cleanup forgets all but the cache.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
+import os
+import sys
+import threading
+from typing import NoReturn
 
 import rclpy
 from geometry_msgs.msg import PoseStamped
@@ -27,6 +32,7 @@ from slipwise_ros.parameters import AUTOSTART, chosen, declare, declared
 from slipwise_ros.runner import Kind, Runner
 
 INACTIVE = "the node is not active"
+LEAVE_WITHIN = 5.0  # s for which the middleware may end its threads
 
 
 class SlipwiseNode(LifecycleNode):
@@ -67,26 +73,27 @@ class SlipwiseNode(LifecycleNode):
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop learning and publishing; what was learned is kept."""
-        self._stop()
+        self.stop()
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Forget all but what the cache has."""
-        self._stop()
+        self.stop()
         self._runner = None
         return super().on_cleanup(state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """End in order."""
-        self._stop()
+        self.stop()
         return super().on_shutdown(state)
 
     def destroy_node(self) -> None:
         """End in order, and leave the graph."""
-        self._stop()
+        self.stop()
         super().destroy_node()
 
-    def _stop(self) -> None:
+    def stop(self) -> None:
+        """Stop learning; the cache is written."""
         self._active = False
         if self._runner is not None:
             self._runner.stop()
@@ -153,10 +160,19 @@ def main() -> None:
     """Run the node until it is interrupted."""
     rclpy.init()
     node = SlipwiseNode()
-    try:
+    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    _leave(node)
+
+
+def _leave(node: SlipwiseNode) -> NoReturn:
+    """End in order, the cache written; threads of the middleware that do not end in time are left behind."""
+    node.stop()
+    late = threading.Timer(LEAVE_WITHIN, os._exit, (0,))
+    late.daemon = True
+    late.start()
+    node.destroy_node()
+    rclpy.try_shutdown()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)
