@@ -9,6 +9,9 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
 
 LOOKED_AT = 40  # newest values
 FEWEST = 8  # times that the courses take turns among these; an outlier is two
@@ -52,6 +55,20 @@ class SourceWatch:
             if self._assigned and self._assigned[-1].other > 1.0 and self._two():
                 self._until = t + CLOSED_FOR
         return t < self._until
+
+    def first(self, t: Floats, rows: Floats) -> float | None:
+        """Return the first stamp [s] at which two sources speak, as `take` would say; None where one does.
+
+        Args:
+            t: [N] stamps.
+            rows: [N, K] finite values. Until one is far from that before it, all are on one course.
+        """
+        far = np.maximum(self._far, self._relative * np.abs(rows[1:]))
+        jumps = np.flatnonzero((np.abs(np.diff(rows, axis=0)) / far > 1.0).any(axis=1))
+        if not len(jumps):
+            return None
+        rest = zip(t[jumps[0] :].tolist(), rows[jumps[0] :].tolist(), strict=True)
+        return next((stamp for stamp, row in rest if self.take(stamp, tuple(row))), None)
 
     def _assign(self, value: tuple[float, ...]) -> None:
         far = [max(least, self._relative * abs(each)) for least, each in zip(self._far, value, strict=True)]

@@ -41,8 +41,7 @@ class TwoSources(Check):
         """Watch wheels and poses until two speak."""
         for run in whole.log.runs:
             for what, watch, t, rows in _streams(run):
-                both = zip(t.tolist(), rows.tolist(), strict=True)
-                first = next((stamp for stamp, row in both if watch.take(stamp, tuple(row))), None)
+                first = watch.first(t, rows)
                 if first is not None:
                     return self.on(what, run.place(first))
         return None

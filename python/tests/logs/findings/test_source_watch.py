@@ -48,3 +48,17 @@ def test_wheel_speeds_with_much_noise_are_one_source() -> None:
 def test_a_pose_that_is_no_number_says_nothing() -> None:
     watch = SourceWatch(FAR)
     assert not watch.take(0.0, (float("nan"), 0.0))
+
+
+@pytest.mark.parametrize("second", [0.0, 40.0])
+def test_a_whole_stream_is_judged_as_its_samples_are(second: float) -> None:
+    rng, t = np.random.default_rng(2), 0.05 * np.arange(2000)
+    rows = np.column_stack((t, rng.normal(0.0, 0.1, 2000)))
+    rows[1000::2, 0] += second
+    rows[300] += 30.0  # an outlier
+    watch = SourceWatch(FAR)
+    seen = [stamp for stamp, row in zip(t, rows, strict=True) if watch.take(stamp, tuple(row))]
+    first = SourceWatch(FAR).first(t, rows)
+    assert first == (seen[0] if seen else None)
+    assert (first is None) == (second == 0.0)
+    assert SourceWatch(FAR).first(t[:300], rows[:300]) is None
