@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from benchmarks.wear_bound import KINDS, alarms_of
 
-from slipwise.fleet import correlated, findings_of
+from slipwise.fleet import correlated
 from slipwise.fleet.correlated import FEWEST_OF_WALK, Series, trends, walks
 
 SIGMA = 0.004
@@ -77,36 +78,11 @@ def test_the_likelihood_of_a_walk_is_that_of_statsmodels() -> None:
         assert found.variance[place, 0] == pytest.approx(smoothed.filtered_state_cov[0, 0, -1], rel=1e-4)
 
 
-def scattered(random: np.random.Generator, scatter: str, vehicles: int, logs: int) -> np.ndarray:
-    """Return scatter of three times what logs say: of each log, over several logs, or by the season."""
-    drawn = random.standard_normal((vehicles, logs))
-    if scatter == "season":
-        year = random.uniform(0.7, 4.0) * logs
-        wave = np.sqrt(2.0) * np.sin(2.0 * np.pi * (np.arange(logs) / year + random.uniform()))
-        return 3.0 * np.tile(wave, (vehicles, 1))
-    if scatter == "ground":
-        for k in range(1, logs):
-            drawn[:, k] = 0.7 * drawn[:, k - 1] + np.sqrt(1.0 - 0.7**2) * drawn[:, k]
-    return 3.0 * drawn
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("scatter", ["independent", "ground", "season"])
+@pytest.mark.parametrize("scatter", KINDS)
 def test_a_fleet_without_wear_seldom_alarms(scatter: str) -> None:
     random = np.random.default_rng(3)
-    vehicles, days, alarmed = 8, np.arange(30.0), 0
-    for _ in range(60):
-        noise = random.standard_normal((vehicles, 30)) + scattered(random, scatter, vehicles, 30)
-        values = random.normal(-0.1, 0.02, (vehicles, 1)) + SIGMA * noise
-        table = {
-            "vehicle": np.repeat([f"robot-{k}" for k in range(vehicles)], 30),
-            "parameter": np.full(values.size, "lon.V"),
-            "unit": np.full(values.size, "-"),
-            "value": values.ravel(),
-            "std": np.full(values.size, SIGMA),
-            "start": np.tile(1.7e9 + 86400.0 * days, vehicles),
-            "distance": np.full(values.size, 500.0),
-        }
-        (found,) = findings_of(table)
-        alarmed += any(each.alarm and each.kind == "drift" for each in found.findings)
-    assert alarmed / 60 <= 0.12  # 0.05 asked; three standard deviations of 60 draws; 0.9 and more before
+    alarmed = [
+        any(kind == "drift" for _, kind in alarms_of(random, SIGMA, 0.0, scatter, 3.0)) for _ in range(60)
+    ]
+    assert np.mean(alarmed) <= 0.12  # 0.05 asked; three standard deviations of 60 draws; 0.9 and more before
