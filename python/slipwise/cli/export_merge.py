@@ -89,8 +89,10 @@ def _merged(
 ) -> tuple[Merged, dict[str, str]]:
     """Merge one target, or all that the file has nodes for; say why others are left out."""
     from slipwise.errors import ModelError, SettingsError
-    from slipwise.export import TARGETS, Merged
+    from slipwise.export import TARGETS, Merged, options_of
 
+    if target not in _NO_PARAMETERS:
+        options = options_of(*source, options)
     if target != "all":
         return _merged_target(model, model_name, target, options, source), {}
     text, where = source
@@ -113,14 +115,13 @@ def _merged_target(
     model: Model, model_name: str, target: str, options: ExportOptions, source: tuple[str, str]
 ) -> Merged:
     from slipwise.errors import SettingsError
-    from slipwise.export import export_model, merge_firmware, merge_parameters, options_of
+    from slipwise.export import export_model, merge_firmware, merge_parameters
 
     if target == "c-header":
         raise SettingsError("a C header is no parameter file", where="--merge", advice="export it without")
     if target in _NO_PARAMETERS:
         made = export_model(model, target, name=model_name, options=options, force=True)
         return merge_firmware(*source, made.text, made.kept)
-    options = options_of(*source, options)
     made = export_model(model, target, name=model_name, options=options, force=True)
     assert made.parameters is not None
     return merge_parameters(*source, made.parameters, options)
