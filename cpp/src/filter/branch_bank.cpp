@@ -105,10 +105,11 @@ void update_branch(const MotionModel& model, Estimate& known, const IekfUpdate& 
   const auto& by_parameter = shared.at.by_parameter;
   const Rows left = measured.value - shared.at.predicted - by_parameter * (known.mean - shared.estimate.mean);
   const double nis = normalised_square(left, innovation_covariance(known.covariance, by_parameter, measured.noise));
-  if (!(nis <= settings.gate)) {
+  const double weight = settings.weight(nis);
+  if (weight == 0.0) {
     return;
   }
-  const RowsCovariance weighted = measured.noise * std::max(std::sqrt(nis) / settings.huber, 1.0);
+  const RowsCovariance weighted = measured.noise / weight;
   const Estimate before = known;
   known.mean += linear_update(known.covariance, by_parameter, weighted) * left;
   if (!shared.bent.isZero(0.0)) {

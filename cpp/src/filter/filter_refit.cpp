@@ -38,9 +38,10 @@ void FilterRefit::weight(const DrivenSegment& driven) {
   auto at = linearize_segment(model_, state_.estimate.mean, driven.inputs, segment);
   const RowsCovariance noise = segment_noise(at.path, rows_of(segment.measured), noise_.shape, scale);
   const Rows innovation = error_of(segment, at);
-  const RowsCovariance covariance = at.by_parameter * state_.estimate.covariance * at.by_parameter.transpose() + noise;
+  const RowsCovariance covariance = innovation_covariance(state_.estimate.covariance, at.by_parameter, noise);
   const double nis = normalised_square(innovation, covariance);
-  if (!(nis <= iekf_.gate)) {
+  const double counts = iekf_.weight(nis);
+  if (counts == 0.0) {
     last_.reset();
     return;
   }
@@ -48,8 +49,7 @@ void FilterRefit::weight(const DrivenSegment& driven) {
   if (!model_.learned().dynamics && last_) {
     shared = shared_noise(segment, *last_, noise_.shape, scale);
   }
-  const double larger = std::max(std::sqrt(nis) / iekf_.huber, 1.0);
-  data_.push_back({.inputs = driven.inputs, .segment = segment, .noise = noise * larger, .shared = std::move(shared)});
+  data_.push_back({.inputs = driven.inputs, .segment = segment, .noise = noise / counts, .shared = std::move(shared)});
   at_.push_back(std::move(at));
   places_.push_back(done_);
   last_ = segment;

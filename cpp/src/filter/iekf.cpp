@@ -100,15 +100,10 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
                     .weight = 1.0,
                     .status = Status::Converged};
   update.nis = normalised_square(update.innovation, update.innovation_covariance);
-  if (!(update.nis <= settings.gate)) {
-    update.weight = 0.0;
-    update.status = Status::Rejected;
+  update.weigh(settings);
+  if (update.weight == 0.0) {
     update.at = std::move(at_prior);
     return update;
-  }
-  if (const double sigmas = std::sqrt(update.nis); sigmas > settings.huber) {
-    update.weight = settings.huber / sigmas;
-    update.status = Status::Downweighted;
   }
   const RowsCovariance weighted_noise = noise / update.weight;
   const MeasuredSegment measured{model, inputs, segment, weighted_noise};
@@ -132,6 +127,16 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
   follow_times(model, prior.mean, update.estimate);
   update.at = std::move(now.at);
   return update;
+}
+
+double IekfSettings::weight(double nis) const {
+  const double sigmas = std::sqrt(nis);
+  return !(nis <= gate) ? 0.0 : sigmas > huber ? huber / sigmas : 1.0;
+}
+
+void IekfUpdate::weigh(const IekfSettings& settings) {
+  weight = settings.weight(nis);
+  status = weight == 0.0 ? Status::Rejected : weight < 1.0 ? Status::Downweighted : Status::Converged;
 }
 
 void follow_times(const MotionModel& model, const Eigen::VectorXd& before, Estimate& estimate) {

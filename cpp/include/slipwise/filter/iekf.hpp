@@ -20,6 +20,8 @@ struct IekfSettings {
   double gate = 50.0;       ///< NIS (3 degrees of freedom) beyond which a segment is rejected [-]
 
   MapSettings map() const { return {.iterations = iterations, .tolerance = tolerance, .halvings = halvings}; }
+  /// Huber weight of a residual: 1 where nothing is unusual, 0 where it is rejected; its noise is divided by that.
+  double weight(double nis) const;
 };
 
 /// One segment's update.
@@ -33,6 +35,9 @@ struct IekfUpdate {
   SegmentLinearization at = {};  ///< at the estimate's mean, as `iekf_update` returns it
   /// What the actuator bends away from its linearisation: added to the noise where the covariance learns.
   RowsCovariance bent = {};
+
+  /// Says by the NIS what the segment counts.
+  void weigh(const IekfSettings& settings);
 };
 
 /// `noise` is the covariance R of what was measured of the segment. \throws std::invalid_argument when sizes do not

@@ -127,13 +127,7 @@ IekfUpdate DelayedState::judge(const Pose2& end) const {
                     .weight = 1.0,
                     .status = Status::Converged};
   update.nis = normalised_square(update.innovation, update.innovation_covariance);
-  if (!(update.nis <= iekf_.gate)) {
-    update.weight = 0.0;
-    update.status = Status::Rejected;
-  } else if (const double sigmas = std::sqrt(update.nis); sigmas > iekf_.huber) {
-    update.weight = iekf_.huber / sigmas;
-    update.status = Status::Downweighted;
-  }
+  update.weigh(iekf_);
   return update;
 }
 
