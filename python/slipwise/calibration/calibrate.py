@@ -78,7 +78,7 @@ def calibrate(
     return calibrate_by(
         lambda windows: learn(settings, windows, progress),
         log,
-        input or choose_input(log),
+        choose_input(log, input),
         settings,
         smooth=smooth,
     )

@@ -69,7 +69,7 @@ def calibrate_sequence(
         )
     if start is None:  # what is begun with keeps its terms: nothing is remembered of others
         settings = for_the_ground_of(logs[0], settings)
-    input_name = input or (start.content.input if start is not None else choose_input(logs[0]))
+    input_name = choose_input(logs[0], input or (None if start is None else start.content.input))
     log = joined(list(logs))
     drives = _drives(logs, input_name)
     windows = learning_windows(tuple(run for drive in drives for run in drive), input_name, settings)

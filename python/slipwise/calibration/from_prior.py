@@ -84,9 +84,9 @@ def calibrate_from(
             )
         return calibrate(log, input=input, settings=settings, progress=progress), None
     if prior is None:
-        return _learned(log, input or choose_input(log), settings, progress=progress)
+        return _learned(log, choose_input(log, input), settings, progress=progress)
     start = start_of(prior)
-    input_name = input or start.input
+    input_name = choose_input(log, input or start.input)
     begun = _learned(log, input_name, settings, begin=(start, str(prior.path)), progress=progress)
     fresh = _learned(log, input_name, settings)
     if score_gain(begun[0], fresh[0]) < -AGAINST:

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from slipwise.calibration.keys import key
+from slipwise.models.inputs import InputName, singular
 
 Name = Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
 Seconds = Annotated[float, Field(gt=0.0, le=1e6)]
@@ -72,7 +73,7 @@ class LiveTable(_Table):
     # Options of the command line:
     name: Annotated[str, Field(min_length=1, max_length=64)] = "robot"  # of the robot
     transport: Transports | None = None  # None: the first ROS that is there
-    input: Literal["command", "wheel"] | None = None
+    input: Annotated[InputName | None, BeforeValidator(singular)] = None
     model: str | None = None  # start model
     memory: bool = False  # remember surfaces, and begin with those of the start model
     surface: Annotated[str, Field(min_length=1, max_length=80)] | None = None  # name of the first surface

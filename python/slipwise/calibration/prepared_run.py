@@ -11,17 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.errors import LogError, SettingsError
+from slipwise.errors import LogError
 from slipwise.logs.gyro import gyro_alone, gyro_rows
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Inputs, LeftOut, Log, Run, Source
+from slipwise.models.inputs import MANY, input_name_of
 from slipwise.segments import WindowRules, cut_windows
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_MANY = {"command": "commands", "wheel": "wheel speeds"}
-INPUT_NAMES = ("command", "wheel")
 LEAST_MEASURED = 2  # poses or yaw rates of a run that is learned from
 OVERLAP = 1.0  # s; runs of one clock overlap by less, where files were split while messages were on the way
 
@@ -119,10 +118,7 @@ def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
         LogError: no run has such inputs, or no run has poses.
         SettingsError: there is no such input.
     """
-    if input_name not in INPUT_NAMES:
-        raise SettingsError(
-            f"unknown input '{input_name}'", where="--input", advice=f"use {' or '.join(INPUT_NAMES)}"
-        )
+    input_name = input_name_of(input_name, where="--input")
     drive = []
     alone = gyro_alone(log.runs)
     for index, run in enumerate(log.runs):
@@ -164,7 +160,7 @@ def _lacking(run: Run, input_name: str, *, alone: bool) -> str:
     """Return what a run lacks to be learned from; empty where it has all."""
     inputs = run.commands if input_name == "command" else run.wheels
     if inputs is None or len(inputs) == 0:
-        return _MANY[input_name]
+        return MANY[input_name]
     if (len(gyro_rows(run)) if alone else len(run.poses)) < LEAST_MEASURED:
         return "yaw rates" if alone else "poses"
     return ""
@@ -184,8 +180,14 @@ def _in_time(drive: list[PreparedRun]) -> list[PreparedRun]:
     return drive if overlap else ordered
 
 
-def choose_input(log: Log) -> str:
-    """Return "command" where the log has commands, otherwise "wheel"."""
+def choose_input(log: Log, asked: str | None = None) -> str:
+    """Return the input that is asked for; else "command" where the log has commands, otherwise "wheel".
+
+    Raises:
+        SettingsError: there is no such input.
+    """
+    if asked is not None:
+        return input_name_of(asked, where="--input")
     return next(iter(_input_names(log)), "wheel")
 
 
@@ -226,7 +228,7 @@ def _nothing_to_use(log: Log, input_name: str) -> str:
     if not _input_names(log):
         return "the log has no commands and no wheel speeds"
     if input_name in _input_names(log):
-        return f"no run of the log has both {_MANY[input_name]} and poses"
+        return f"no run of the log has both {MANY[input_name]} and poses"
     return f"the log has no {input_name} input" if input_name == "wheel" else "the log has no commands"
 
 
@@ -251,7 +253,7 @@ def _advice(log: Log, input_name: str) -> str:
             return "look at what writes them, or name another pose topic with --pose-topic"
         return "record where the robot went (RTK, lidar, mocap), or name the pose topic with --pose-topic"
     if input_name in _input_names(log):
-        return f"record poses in the runs that have {_MANY[input_name]}"
+        return f"record poses in the runs that have {MANY[input_name]}"
     if input_name in log.advice:
         return log.advice[input_name]
     name = f"name the topic with --{input_name}-topic, or the columns (see `slipwise inspect`)"

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from slipwise.calibration.judgement import FEWEST_WINDOWS
-from slipwise.calibration.prepared_run import INPUT_NAMES, WindowSet, collect_windows, prepare_run
+from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.errors import LogError
 from slipwise.logs.findings.command_stops import stops_of
 from slipwise.logs.log import Log
+from slipwise.models.inputs import INPUT_NAMES
 
 NEEDED = 2 * FEWEST_WINDOWS  # segments, half of which are held out
 _NAMES = {"command": "commands", "wheel": "wheel speeds"}

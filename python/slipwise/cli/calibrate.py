@@ -96,7 +96,7 @@ def calibrate(
     asked = Asked(
         logs,
         log_options,
-        input_name and input_name.value,
+        input_name,
         chosen,
         memory,
         tuple(surface or ()),

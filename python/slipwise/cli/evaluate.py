@@ -121,9 +121,7 @@ def evaluate(
         from slipwise.cli.evaluate_memory import MemoryQuestion, evaluate_memory
 
         begin = sequence_options(models, surface, logs)
-        asked = MemoryQuestion(
-            logs, log_options, input_name and input_name.value, options, begin, predictions, report
-        )
+        asked = MemoryQuestion(logs, log_options, input_name, options, begin, predictions, report)
         return evaluate_memory(out, asked, chosen, runs)
     refuse_labels(surface)
     with progress_bar("reading") as update:
@@ -131,7 +129,7 @@ def evaluate(
         with run_folder(runs, "evaluate") as folder:
             evaluation = judge_methods(
                 log,
-                input=input_name and input_name.value,
+                input=input_name,
                 settings=chosen,
                 options=options,
                 progress=lambda name, fraction: update(f"method {name}", fraction),

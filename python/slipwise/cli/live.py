@@ -103,7 +103,7 @@ def live(
 
     given = {
         "transport": transport, "name": name, "model": model and str(model), "memory": memory or None,
-        "cache": cache and str(cache), "input": input_name and input_name.value,
+        "cache": cache and str(cache), "input": input_name,
         "surface": surface,
     }  # fmt: skip
     chosen = live_settings(chosen_settings(settings, changes), given)

@@ -7,7 +7,6 @@ import contextlib
 import functools
 import inspect
 from collections.abc import Callable, Sequence
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -24,11 +23,10 @@ if TYPE_CHECKING:
 GRADE_HELP = "Ground that falls by SLOPE towards DOWNHILL, both in degrees, 0 along x."
 
 
-class InputName(StrEnum):
-    """What a model is learned from."""
+def _input_name(text: str) -> str:
+    from slipwise.models.inputs import input_name_of
 
-    command = "command"
-    wheel = "wheel"
+    return input_name_of(text, where="--input")
 
 
 def optional(metavar: str, text: str, *names: str) -> Any:
@@ -45,9 +43,11 @@ Logs = Annotated[
     ),
 ]
 Input = Annotated[
-    InputName | None,
+    str | None,
     typer.Option(
         "--input",
+        parser=_input_name,
+        metavar="[command|wheel]",
         show_default=False,
         help="Learn from commands or wheel speeds; default: commands where the log has them.",
     ),

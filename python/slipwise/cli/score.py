@@ -51,7 +51,7 @@ def score(
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         update("scoring", 0.5)
-        scored = score_predictions(predictions, log, input=input_name and input_name.value, settings=chosen)
+        scored = score_predictions(predictions, log, input=input_name, settings=chosen)
     out.document(head("score") | {"exit_code": 0} | evaluation_part(scored) | log_part(log, scored.left_out))
     show_notes(out, scored.notes)
     show_left_out(out, scored.left_out)

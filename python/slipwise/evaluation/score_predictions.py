@@ -40,7 +40,7 @@ def score_predictions(
     """
     settings = for_the_ground_of(log, settings or Settings())
     rows = read_predictions(path)
-    input_name = input or choose_input(log)
+    input_name = choose_input(log, input)
     contest, notes = contest_of(log, input_name, settings, EvaluationOptions(rows.horizons))
     if len(contest.targets) < len(rows.horizons):
         raise LogError("; ".join(notes), where=str(path), advice="leave these rows out")

@@ -98,7 +98,7 @@ def evaluate_sequence(
     if not logs:
         raise LogError("a sequence needs a log", where="--memory", advice="give logs in the order of time")
     memory = options.memory or SequenceOptions()
-    input_name = input or (memory.start.content.input if memory.start else choose_input(logs[0][1]))
+    input_name = choose_input(logs[0][1], input or (memory.start.content.input if memory.start else None))
     drives = [prepare_run(log, input_name) for _, log in logs]
     horizons = sorted(set(options.horizons))
     remembering = settings.model_copy(update={"basis": REMEMBERING, "estimator": AVERAGE})

@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from slipwise.errors import ModelError
-from slipwise.models.schema import Finite, InputName, NotNegative, Positive
+from slipwise.models.inputs import InputName
+from slipwise.models.schema import Finite, NotNegative, Positive
 from slipwise.models.yaml_file import read_yaml
 from slipwise.validation_text import first_problem
 

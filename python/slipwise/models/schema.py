@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
+from slipwise.models.inputs import InputName
 from slipwise.student import LEAST_DOF, MOST_DOF
 
 SCHEMA_VERSION = 5
@@ -30,7 +31,6 @@ Dof = Annotated[Number, Field(ge=LEAST_DOF, le=MOST_DOF, allow_inf_nan=False)]
 Triple = Annotated[list[NotNegative], Field(min_length=3, max_length=3)]
 Pair = Annotated[list[NotNegative], Field(min_length=2, max_length=2)]
 Span = Annotated[list[Finite], Field(min_length=2, max_length=2)]
-InputName = Literal["command", "wheel"]
 Stage = Literal["slip", "force", "actuator", "clock", "sensor", "limits", "car"]
 
 

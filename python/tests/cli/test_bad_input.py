@@ -85,7 +85,7 @@ def test_wrong_use_is_said_in_one_line(
         (["calibrate", "drive.csv", "--inptu", "wheel"], "No such option: --inptu"),
         (
             ["calibrate", "drive.csv", "--input", "thrust"],
-            "Invalid value for '--input': 'thrust' is not one of",
+            "unknown input 'thrust' (--input): use command or wheel",
         ),
         (["calibrate", "drive.csv", "--wheel-separation", "wide"], "--wheel-separation"),
         (
