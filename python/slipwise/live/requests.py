@@ -32,7 +32,9 @@ def asked_commands(
     if "ahead" not in asked:
         rows = np.array(asked["commands"], dtype=np.float64)
     else:
-        ahead = asked["ahead"]
+        ahead = dict(asked["ahead"])
+        if "steering" in names and "omega" not in names:  # a message has one field for both
+            ahead.setdefault("steering", ahead.pop("omega", []))
         unknown = sorted(name for name in set(ahead) - {"t", *names} if any(ahead[name]))
         if unknown:
             raise ValueError(f"the robot takes {', '.join(names)}, not {', '.join(unknown)}")

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -24,10 +23,19 @@ from slipwise.live.outputs import (
     Path,
     Status,
     SurfaceNow,
-    next_moves_content,
-    surface_content,
 )
-from slipwise.live.typed_messages import MOTION_MODEL, SLIP_STATE, motion_model, slip_state
+from slipwise.live.typed_messages import (
+    MOTION_MODEL,
+    NEXT_MOVES,
+    PREDICTED_PATH,
+    SLIP_STATE,
+    SURFACES,
+    motion_model,
+    next_moves,
+    predicted_path,
+    slip_state,
+    surfaces,
+)
 from slipwise.live.wires.ros_types import ros_types
 
 if TYPE_CHECKING:
@@ -60,12 +68,12 @@ TOPICS: Mapping[str, RosTopic] = {
     "twist": RosTopic(TWIST),
     "predicted_path": RosTopic(PATH),
     "prediction": RosTopic(PATH),
-    "prediction_json": RosTopic(STRING),
+    "prediction_with_covariance": RosTopic(PREDICTED_PATH),
     "diagnostics": RosTopic(DIAGNOSTICS),
     "model": RosTopic(STRING, latched=True),
     "surface": RosTopic(STRING, latched=True),
-    "surface_json": RosTopic(STRING, latched=True),
-    "next_moves": RosTopic(STRING, latched=True),
+    "surfaces": RosTopic(SURFACES, latched=True),
+    "next_moves": RosTopic(NEXT_MOVES, latched=True),
     "motion_model": RosTopic(MOTION_MODEL, latched=True),
     "slip_state": RosTopic(SLIP_STATE, latched=True),
 }
@@ -133,7 +141,7 @@ class RosMessages:
             case SurfaceNow():
                 return self._surface(output)
             case NextMovesNow():
-                return [self._string("next_moves", output.t, json.dumps(next_moves_content(output)))]
+                return [self._own("next_moves", output.t, next_moves, output)]
             case ModelText():
                 return self._model(output)
             case Note():
@@ -170,8 +178,11 @@ class RosMessages:
         message = self._types[PATH](self._head(first, frame), poses)
         if not path.asked:
             return [self._message("predicted_path", first, message)]
-        whole = self._string("prediction_json", first / 1e9, prediction_json(path))
-        return [self._message("prediction", first, message), whole]
+        whole = predicted_path(self._types, path, message)
+        return [
+            self._message("prediction", first, message),
+            self._message("prediction_with_covariance", first, whole),
+        ]
 
     def _model(self, said: ModelText) -> list[RosMessage]:
         found, stamp = [self._string("model", said.t, said.text)], stamp_ns(said.t)
@@ -209,7 +220,7 @@ class RosMessages:
 
     def _surface(self, now: SurfaceNow) -> list[RosMessage]:
         """The name where it is another one, and all that is known of it."""
-        whole = self._string("surface_json", now.t, json.dumps(surface_content(now)))
+        whole = self._own("surfaces", now.t, surfaces, now)
         if now.name == self._surface_name:
             return [whole]
         self._surface_name = now.name
@@ -217,6 +228,10 @@ class RosMessages:
 
     def _string(self, topic: str, t: float, text: str) -> RosMessage:
         return self._message(topic, stamp_ns(t), self._types[STRING](_text(text)))
+
+    def _own(self, topic: str, t: float, make: Callable[..., Any], now: Output) -> RosMessage:
+        stamp = stamp_ns(t)
+        return self._message(topic, stamp, make(self._types, now, self._head(stamp, CHILD_FRAME), _text))
 
     def _message(self, topic: str, stamp: int, message: object) -> RosMessage:
         return RosMessage(topic, bytes(self.store.serialize_cdr(message, TOPICS[topic].type)), stamp)
@@ -236,27 +251,6 @@ def stamp_ns(t: float) -> int:
         return 0
     whole = math.floor(t)  # apart from the rest, so that nothing is lost in large numbers
     return min(max(whole * 1_000_000_000 + round((t - whole) * 1e9), 0), _LATEST * 1_000_000_000)
-
-
-def prediction_json(path: Path) -> str:
-    """Return a predicted path with its covariance as JSON; null stands for what is not finite."""
-    return json.dumps(
-        {
-            "frame": path.frame,
-            "t": _finite(path.t),
-            "poses": _finite(path.poses),
-            "covariance": _finite(path.covariance),
-        }
-    )
-
-
-def _finite(numbers: Floats) -> Any:
-    """Return an array as nested lists with None for what JSON cannot say."""
-    if np.isfinite(numbers).all():
-        return numbers.tolist()
-    said = numbers.astype(object)
-    said[~np.isfinite(numbers)] = None
-    return said.tolist()
 
 
 def _spatial(planar: Floats) -> Floats:

@@ -7,7 +7,7 @@ import contextlib
 import queue
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -22,6 +22,7 @@ from slipwise.live.ros_samples import FixPoses, ToPose, to_command, to_gyro, to_
 from slipwise.live.samples import Override, Pose, Request, SurfaceCue, Unusable
 from slipwise.live.stamps import Stamps
 from slipwise.live.transport import OnSample
+from slipwise.live.typed_messages import COMMANDS, asked_of
 from slipwise.live.wires.ros_types import OWN_PACKAGE, ros_types
 from slipwise.live.wires.wire import RosWire
 from slipwise.logs.messages import IMU, NAV_SAT_FIX
@@ -107,8 +108,9 @@ class RosTransport:
             self._take(topic, STRING, lambda message, _: SurfaceCue(message.data or " "), on_sample)
         changed = self._full("terrain_changed")
         self._take(changed, EMPTY, lambda _message, _t: SurfaceCue(), on_sample)
-        asked = self._full("predict")
-        self._take(asked, STRING, lambda message, _: Request("predict", message.data), on_sample)
+        self._take_own(
+            "predict", COMMANDS, lambda message, _: Request("predict", asked_of(message)), on_sample
+        )
         self._caller.start()
 
     def publish(self, output: Output) -> None:
@@ -132,15 +134,25 @@ class RosTransport:
     def _wanted(self, output: Output, topic: str) -> bool:
         return self._heard(topic) and (not isinstance(output, Status) or self._is_news(output))
 
+    def _take_own(self, topic: str, kind: str, convert: ToSample, on_sample: OnSample) -> None:
+        """Subscribe to a type of slipwise_msgs where this ROS has it."""
+        with self._said_where_unknown(topic, kind, "is not listened to"):
+            self._take(self._full(topic), kind, convert, on_sample)
+
     def _advertise(self, topic: str, about: RosTopic) -> None:
-        """Announce a topic; a ROS without slipwise_msgs does without what needs them, and that is said."""
-        try:
+        with self._said_where_unknown(topic, about.type, "is not published"):
             self._wire.advertise(self._full(topic), about.type, latched=about.latched)
+
+    @contextlib.contextmanager
+    def _said_where_unknown(self, topic: str, kind: str, consequence: str) -> Iterator[None]:
+        """A ROS without slipwise_msgs does without what needs them, and that is said."""
+        try:
+            yield
         except SlipwiseError as problem:
-            if not about.type.startswith(OWN_PACKAGE):
+            if not kind.startswith(OWN_PACKAGE):
                 raise
             self._unknown.add(topic)
-            self._notices.put(f"{self._full(topic)} is not published: {problem}")
+            self._notices.put(f"{self._full(topic)} {consequence}: {problem}")
 
     def _is_news(self, status: Status) -> bool:
         """Diagnostics come once a second, as is usual in ROS, or where something changed."""

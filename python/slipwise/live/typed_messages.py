@@ -1,20 +1,34 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The messages of slipwise's own, those of ros/slipwise_msgs: the model by its numbers, and the slip now."""
+"""The messages of slipwise's own, those of ros/slipwise_msgs, of what the node gives and is asked."""
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
-from slipwise.live.outputs import ModelText, Status, Validity
+from slipwise.live.outputs import (
+    ModelText,
+    NextMovesNow,
+    ParameterNow,
+    Path,
+    Status,
+    SureNow,
+    SurfaceNow,
+    Validity,
+)
 from slipwise.models import Model
 from slipwise.models.schema import Noise, Parameter
 
 MOTION_MODEL = "slipwise_msgs/msg/MotionModel"
 SLIP_STATE = "slipwise_msgs/msg/SlipState"
+NEXT_MOVES = "slipwise_msgs/msg/NextMoves"
+SURFACES = "slipwise_msgs/msg/Surfaces"
+PREDICTED_PATH = "slipwise_msgs/msg/PredictedPath"
+COMMANDS = "slipwise_msgs/msg/Commands"
 
 #: Constants of MotionModel.msg.
 VALIDITY: Mapping[Validity, int] = {"unestimated": 0, "estimated": 1, "invalid": 2}
@@ -80,6 +94,67 @@ def slip_state(types: Types, status: Status, header: Any, text: Callable[[str], 
         segments=status.segments,
         surface="" if surface is None else text(surface.name),
         surface_probability=math.nan if surface is None else surface.probability,
+    )
+
+
+def next_moves(types: Types, now: NextMovesNow, header: Any, text: Callable[[str], str]) -> Any:
+    """Return the message of the moves worth driving next."""
+    move = types["slipwise_msgs/msg/Move"]
+    return types[NEXT_MOVES](
+        header=header,
+        moves=[
+            move(each.v, each.omega, each.seconds, each.yaw_std, each.position_std, text(each.teaches))
+            for each in now.moves
+        ],
+        reason=text(now.why),
+        predictions=[_certainty(types, each, text) for each in now.predictions],
+        parameters=[_certainty(types, each, text) for each in now.parameters],
+    )
+
+
+def surfaces(types: Types, now: SurfaceNow, header: Any, text: Callable[[str], str]) -> Any:
+    """Return the message of the surface that is driven on, and of those that are remembered."""
+    judged, right = now.labels
+    return types[SURFACES](
+        header=header,
+        names=[text(name) for name, _ in now.probabilities],
+        probabilities=np.array([probability for _, probability in now.probabilities]),
+        remembered=[
+            types["slipwise_msgs/msg/Surface"](
+                name=text(each.name),
+                seconds=each.seconds,
+                segments=each.segments,
+                visits=each.visits,
+                last_seen=text(each.last_seen),
+                speed=each.speed,
+                yaw_rate=each.yaw_rate,
+            )
+            for each in now.remembered
+        ],
+        labels_judged=judged,
+        labels_right=right,
+    )
+
+
+def predicted_path(types: Types, predicted: Path, path: Any) -> Any:
+    """Return the message of a path with its covariance; `path`: its nav_msgs/Path."""
+    return types[PREDICTED_PATH](path=path, covariance=predicted.covariance.ravel())
+
+
+def asked_of(commands: Any) -> str:
+    """Return what a Commands message, or the request of PredictPath, asks, as a request's content has it."""
+    ahead = {axis: list(getattr(commands, axis)) for axis in ("t", "v", "vy", "omega")}
+    return json.dumps({"horizon": commands.horizon, "ahead": ahead})
+
+
+def _certainty(types: Types, each: ParameterNow | SureNow, text: Callable[[str], str]) -> Any:
+    return types["slipwise_msgs/msg/Certainty"](
+        name=text(each.name),
+        unit=each.unit,
+        prior_standard_deviation=each.prior_std,
+        standard_deviation=each.std,
+        target_standard_deviation=each.target_std,
+        known=math.nan if each.known is None else each.known,
     )
 
 

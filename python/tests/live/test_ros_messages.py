@@ -72,27 +72,20 @@ def test_odometry_carries_pose_twist_and_covariances_of_the_plane(messages: RosM
         assert twist.covariance.reshape(6, 6)[plane] == pytest.approx(now.twist_covariance)
 
 
-def test_an_answer_is_a_path_and_json_with_its_covariance(messages: RosMessages) -> None:
+def test_an_answer_is_a_path_and_one_with_its_covariance(messages: RosMessages) -> None:
     path = straight_path(asked=True)
+    path.covariance[1, 0, 0] = np.inf
     read = _of(messages, path)
-    assert set(read) == {"prediction", "prediction_json"}
+    assert set(read) == {"prediction", "prediction_with_covariance"}
     assert [pose.pose.position.x for pose in read["prediction"].poses] == [0.0, 1.0, 2.0, 3.0]
-    answer = json.loads(read["prediction_json"].data)
-    assert answer["frame"] == "map"
-    assert np.array(answer["covariance"]) == pytest.approx(path.covariance)
+    whole = read["prediction_with_covariance"]
+    assert whole.path.poses == read["prediction"].poses
+    assert whole.covariance.tolist() == path.covariance.ravel().tolist()
     assert set(_of(messages, straight_path())) == {"predicted_path"}
 
 
-def test_json_has_null_for_what_is_not_finite(messages: RosMessages) -> None:
-    path = straight_path(asked=True)
-    path.covariance[1, 0, 0] = np.inf
-    answer = json.loads(_of(messages, path)["prediction_json"].data)
-    assert answer["covariance"][1][0][0] is None
-    assert answer["covariance"][2][0][0] == pytest.approx(2e-3)
-
-
 def test_the_model_and_the_surface_are_kept_for_who_comes_late(messages: RosMessages) -> None:
-    latched = {"model", "surface", "surface_json", "next_moves", "motion_model", "slip_state"}
+    latched = {"model", "surface", "surfaces", "next_moves", "motion_model", "slip_state"}
     assert {name for name, topic in TOPICS.items() if topic.latched} == latched
     (message,) = messages.of(ModelText(1.0, "schema: 4\nname: Ä\n"))
     assert message.latched
@@ -123,35 +116,30 @@ def test_the_slip_state_is_sent_where_it_has_changed() -> None:
     assert _read(messages, other).state == "stuck"
 
 
-def test_moves_worth_driving_are_json_with_a_bar_per_prediction_and_parameter(messages: RosMessages) -> None:
-    content = json.loads(_of(messages, next_moves())["next_moves"].data)
-    assert content["moves"][0] == {
-        "v": 1.0,
-        "omega": -0.8,
-        "seconds": 2.0,
-        "yaw_std": 0.12,
-        "position_std": 0.2,
-        "teaches": "ang.V*w",
-    }
-    assert content["predictions"]["position"]["known"] == 1.0
-    assert 0.0 < content["predictions"]["yaw"]["known"] < 1.0
-    assert content["parameters"]["ang.w"]["known"] == 1.0
-    assert content["why"] == ""
+def test_moves_worth_driving_have_a_bar_per_prediction_and_parameter(messages: RosMessages) -> None:
+    read = _of(messages, next_moves())["next_moves"]
+    move = read.moves[0]
+    assert (move.v, move.omega, move.seconds, move.teaches) == (1.0, -0.8, 2.0, "ang.V*w")
+    assert (move.yaw_standard_deviation, move.position_standard_deviation) == (0.12, 0.2)
+    known = {each.name: each.known for each in (*read.predictions, *read.parameters)}
+    assert known["position"] == known["ang.w"] == 1.0
+    assert 0.0 < known["yaw"] < 1.0
+    assert read.reason == ""
 
 
 def test_the_name_of_a_surface_is_sent_where_it_is_another_and_the_rest_each_time() -> None:
     messages = RosMessages()
     sent = [messages.of(surface_at(name=name)) for name in ("sand", "sand", "")]
     assert [[message.topic for message in each] for each in sent] == [
-        ["surface", "surface_json"],
-        ["surface_json"],
-        ["surface", "surface_json"],
+        ["surface", "surfaces"],
+        ["surfaces"],
+        ["surface", "surfaces"],
     ]
     assert [_read(messages, each[0]).data for each in (sent[0], sent[2])] == ["sand", ""]
-    content = json.loads(_read(messages, sent[0][1]).data)
-    assert (content["surface"], content["probabilities"]) == ("sand", {"sand": 0.9, "": 0.1})
-    assert content["remembered"][0]["name"] == "hall"
-    assert content["labels"] == {"all": 3.0, "right": 2.0}
+    whole = _read(messages, sent[0][1])
+    assert (whole.names, whole.probabilities.tolist()) == (["sand", ""], pytest.approx([0.9, 0.1]))
+    assert [(each.name, each.visits) for each in whole.remembered] == [("hall", 2)]
+    assert (whole.labels_judged, whole.labels_right) == (3.0, 2.0)
 
 
 def test_every_output_of_a_drive_is_read_back_to_the_same_bytes(messages: RosMessages) -> None:
@@ -161,7 +149,7 @@ def test_every_output_of_a_drive_is_read_back_to_the_same_bytes(messages: RosMes
             used.add(message.topic)
             again = messages.store.serialize_cdr(_read(messages, message), message.type)
             assert bytes(again) == message.payload
-    assert used == set(TOPICS) - {"prediction", "prediction_json"}
+    assert used == set(TOPICS) - {"prediction", "prediction_with_covariance"}
 
 
 def test_hostile_strings_and_numbers_make_valid_messages(messages: RosMessages) -> None:

@@ -5,15 +5,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from live.sample_outputs import next_moves, odometry_at, straight_path, surface_at, waiting_status
 
 from slipwise.errors import SettingsError
 from slipwise.live.outputs import ModelText, Note
+from slipwise.live.requests import asked_commands
 from slipwise.live.ros_messages import TOPICS
 from slipwise.live.ros_samples import to_pose, to_wheels
 from slipwise.live.ros_transport import CLOCK_TYPE, CueTopics, RosTransport
-from slipwise.live.samples import Pose, Sample, SurfaceCue, Unusable, Wheels
+from slipwise.live.samples import Pose, Request, Sample, SurfaceCue, Unusable, Wheels
+from slipwise.live.typed_messages import COMMANDS
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.wire import WireTopic
 from slipwise.logs.messages import ODOMETRY
@@ -87,9 +90,9 @@ def test_where_nobody_listens_only_what_comes_once_is_published() -> None:
         "model",
         "diagnostics",
         "prediction",
-        "prediction_json",
+        "prediction_with_covariance",
         "surface",
-        "surface_json",
+        "surfaces",
         "next_moves",
     ]
 
@@ -112,14 +115,17 @@ def test_a_ros_without_slipwise_msgs_is_said_and_gets_the_rest() -> None:
             raise SettingsError(f'there is no message type "{kind}" in this ROS')
         own(topic, kind, latched=latched)
 
-    wire.advertise = advertise  # type: ignore[method-assign]
+    def subscribe(topic: str, kind: str, _take: object, *, latched: bool = False) -> None:
+        advertise(topic, kind, latched=latched)
+
+    wire.advertise, wire.subscribe = advertise, subscribe  # type: ignore[method-assign]
     transport = transport_on(wire)
     transport.subscribe(lambda _sample: None)
     transport.publish(waiting_status())
     assert wire.published == ["diagnostics"]
     assert [note.split(" is not")[0] for note in transport.notices()] == [
-        "/slipwise/motion_model",
-        "/slipwise/slip_state",
+        *(f"/slipwise/{topic}" for topic, about in TOPICS.items() if about.type.startswith("slipwise_msgs")),
+        "/slipwise/predict",
     ]
     transport.close()
 
@@ -185,6 +191,20 @@ def test_the_clock_is_that_of_the_parameter_or_where_somebody_publishes_it(
     wire.topics = lambda: [WireTopic("/clock", CLOCK_TYPE, 1)] if published else []  # type: ignore[method-assign]
     transport_on(wire, simulated=simulated).subscribe(lambda _sample: None)
     assert ("/clock" in wire.takers) == heeds
+
+
+@pytest.mark.parametrize("names", [("v", "omega"), ("v", "steering")])
+def test_a_prediction_is_asked_for_with_one_message_however_the_robot_turns(names: tuple[str, str]) -> None:
+    wire, samples = Wire(), list[Sample]()
+    transport_on(wire).subscribe(samples.append)
+    store, axes = ros_types(), ("t", "v", "vy", "omega")
+    numbers = dict(zip(axes, map(np.array, ([0.0, 1.0], [0.5, 0.6], [], [0.1, 0.2])), strict=True))
+    message = store.types[COMMANDS](horizon=3.0, **numbers)  # type: ignore[call-arg]
+    wire.takers["/slipwise/predict"](bytes(store.serialize_cdr(message, COMMANDS)))
+    (request,) = samples
+    assert isinstance(request, Request)
+    rows, horizon = asked_commands(request.content, names, newest=10.0, horizon=2.0)
+    assert (rows.tolist(), horizon) == ([[10.0, 0.5, 0.1], [11.0, 0.6, 0.2]], 3.0)
 
 
 def test_topics_of_a_node_in_a_namespace_are_below_it() -> None:

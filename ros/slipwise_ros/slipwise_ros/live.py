@@ -8,7 +8,6 @@ Deactivated, it keeps what it learned; cleanup forgets all but the cache.
 from __future__ import annotations
 
 import contextlib
-import json
 import math
 import os
 import sys
@@ -28,6 +27,7 @@ from slipwise.errors import SlipwiseError
 from slipwise.live.outputs import Path
 from slipwise.live.ros_messages import stamp_ns
 from slipwise.live.samples import Answer
+from slipwise.live.typed_messages import asked_of
 from slipwise_ros.parameters import AUTOSTART, chosen, declare, declared
 from slipwise_ros.runner import Kind, Runner
 
@@ -127,10 +127,7 @@ class SlipwiseNode(LifecycleNode):
         return _say(Answer(True, "learning begins from nothing"), response)
 
     def _predict(self, request: PredictPath.Request, response: PredictPath.Response) -> PredictPath.Response:
-        turning = list(request.omega)
-        ahead = {"t": list(request.t), "v": list(request.v), "vy": list(request.vy)}
-        ahead |= {"omega": turning, "steering": []}
-        answer = self._ask("predict", json.dumps({"horizon": request.horizon, "ahead": ahead}))
+        answer = self._ask("predict", asked_of(request))
         _say(answer, response)
         if answer.path is not None:
             _fill(response, answer.path)

@@ -27,15 +27,22 @@ HEARD = {
     "diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
     "model": "std_msgs/msg/String",
     "surface": "std_msgs/msg/String",
-    "surface_json": "std_msgs/msg/String",
-    "next_moves": "std_msgs/msg/String",
+    "surfaces": "slipwise_msgs/msg/Surfaces",
+    "next_moves": "slipwise_msgs/msg/NextMoves",
 }
-LATCHED = ("model", "surface", "surface_json", "next_moves")
+LATCHED = ("model", "surface", "surfaces", "next_moves")
 
 
 def get_message(name: str) -> type:
     package, kind, message = name.split("/")
     return getattr(import_module(f"{package}.{kind}"), message)
+
+
+def plain(surfaces: object) -> dict[str, object]:
+    remembered = sorted(each.name for each in surfaces.remembered)
+    names, probabilities = list(surfaces.names), list(surfaces.probabilities)
+    labels = [surfaces.labels_judged, surfaces.labels_right]
+    return {"names": names, "probabilities": probabilities, "remembered": remembered, "labels": labels}
 
 
 def main(file: str, rate: float) -> None:
@@ -77,8 +84,9 @@ def main(file: str, rate: float) -> None:
         "heard": dict(heard),
         "frame": odometry.header.frame_id if odometry else "",
         "model": model.data[:40] if model else "",
-        "surfaces": [last[name].data if name in last else None for name in ("surface", "surface_json")],
-        "moves": last["next_moves"].data if "next_moves" in last else "{}",
+        "surface": last["surface"].data if "surface" in last else None,
+        "surfaces": plain(last["surfaces"]) if "surfaces" in last else None,
+        "moves": len(last["next_moves"].moves) if "next_moves" in last else 0,
         "nodes": node.get_node_names(),
     }
     print(json.dumps(found), flush=True)
