@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds the colcon packages of this repository against the wheels of ROS 2 in an environment, and into it.
 
-Those below ros/, and the plug-in for Nav2, against stand-ins for what PyPI does not have: Nav2, pluginlib and
-rclcpp. Beside a ROS installation none of this is needed: `colcon build` does it there. The wheels name folders of
-the machine that made them, and say nothing of the linker; both are put right here. Run it by the
+Those below ros/, and the plug-in for Nav2, against stand-ins for what PyPI does not have: Nav2, pluginlib
+and rclcpp. Beside a ROS installation none of this is needed: `colcon build` does it there. The wheels name
+folders of the machine that made them, and say nothing of the linker; both are put right here. Run it by the
 environment's own Python.
 """
 
