@@ -8,11 +8,13 @@ from dataclasses import dataclass
 
 from slipwise.calibration.coming import Coming
 from slipwise.calibration.live_table import LiveTable
+from slipwise.live.first_messages import FirstMessages
 from slipwise.live.ros_roles import (
     find_roles,
     first_poses,
     only_positions,
     source_topics,
+    topics_heard,
     with_oriented_imu,
 )
 from slipwise.live.ros_transport import CueTopics, RosTransport
@@ -53,18 +55,26 @@ def find_robot(  # noqa: PLR0913 (where it is, and what is known of it)
     """
     try:
         roles = find_roles(wire, options, say, own=f"/{name}")
-        roles = with_oriented_imu(wire, roles, say)
+        first = FirstMessages(wire, topics_heard(roles))
+        roles = with_oriented_imu(first, roles, say)
         for note in roles.guessed:
             say(str(note))
         input_name = table.input or ("command" if roles.command is not None else "wheel")
         say(f"learning from {input_name}s; the node is /{name}")
         if only_positions(roles):
             say("satellite fixes without an IMU: positions only, headings are the direction of the path")
-        seen = first_poses(wire, roles, say)
+        seen = first_poses(first, roles, say)
         positions = only_positions(roles) or table.positions or seen.positions
         cues = CueTopics(table.override_topic, table.surface_topic)
         transport = RosTransport(
-            wire, roles, options, name=name, cues=cues, headed=not positions, simulated=simulated
+            wire,
+            roles,
+            options,
+            name=name,
+            cues=cues,
+            headed=not positions,
+            simulated=simulated,
+            first=first,
         )
     except BaseException:
         wire.close()

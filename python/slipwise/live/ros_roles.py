@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import contextlib
-import queue
 import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 from slipwise.live.cdr_reader import reader_of
+from slipwise.live.first_messages import FirstMessages
 from slipwise.live.one_rotation import rotation_of
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.wire import RosWire
@@ -66,21 +66,29 @@ def find_roles(
         time.sleep(LOOK_EVERY)
 
 
-def with_oriented_imu(wire: RosWire, roles: Roles, say: Callable[[str], None]) -> Roles:
+def topics_heard(roles: Roles) -> list[Topic]:
+    """Return the topics from which is learned, one or two times where one is wheels and pose."""
+    fixes = roles.pose is not None and roles.pose.type == NAV_SAT_FIX
+    turning = (roles.imu or roles.gyro) if fixes else (roles.gyro if roles.pose is None else None)
+    found = (roles.command, roles.wheel, roles.pose, turning, *roles.others)
+    return [topic for topic in found if topic is not None]
+
+
+def with_oriented_imu(first: FirstMessages, roles: Roles, say: Callable[[str], None]) -> Roles:
     """Return the roles without an IMU for headings where what it says first has no orientation: a gyro alone.
 
     Args:
-        wire: brings its messages.
+        first: messages of its topic.
         roles: that were chosen.
         say: called with what was found.
     """
     if roles.imu is None or roles.pose is None or roles.pose.type != NAV_SAT_FIX:
         return roles
-    rotated = _has_rotation(wire, roles.imu, IMU_VALUES[IMU])
-    if rotated is False:
+    angles = _first_angles(first, roles.imu, IMU_VALUES[IMU])
+    if angles is not None and not any(angles):
         say(f"{roles.imu.name} has no orientation: its yaw rates are used")
         return replace(roles, imu=None)
-    if rotated is None:
+    if angles is None:
         say(f"{roles.imu.name} is silent: headings wait for it")
     return roles
 
@@ -92,49 +100,37 @@ class FirstPoses(NamedTuple):
     attitude: bool = False  # they have a roll or a pitch: terms of gravity are tried
 
 
-def first_poses(wire: RosWire, roles: Roles, say: Callable[[str], None]) -> FirstPoses:
+def first_poses(first: FirstMessages, roles: Roles, say: Callable[[str], None]) -> FirstPoses:
     """Return what the first poses show; of satellite fixes, what the IMU beside them does.
 
     Args:
-        wire: brings messages.
+        first: messages of these topics.
         roles: that were chosen.
         say: called with what was found.
     """
     if roles.pose is None:
         return FirstPoses()
     if roles.pose.type == NAV_SAT_FIX:
-        angles = _first_angles(wire, roles.imu, IMU_VALUES[IMU]) if roles.imu is not None else None
+        angles = _first_angles(first, roles.imu, IMU_VALUES[IMU]) if roles.imu is not None else None
         positions = False
     else:
         kind = POSE_VALUES[roles.pose.type]
-        angles = _first_angles(wire, roles.pose, lambda message: kind(message)[3:7])
+        angles = _first_angles(first, roles.pose, lambda message: kind(message)[3:7])
         positions = bool(angles) and not any(angles or ())
     if positions:
         say(f"the quaternions of {roles.pose.name} are no rotations: positions only")
     return FirstPoses(positions, any(each and (each[0] or each[1]) for each in angles or ()))
 
 
-def _has_rotation(wire: RosWire, topic: Topic, values: Callable[[Any], Values]) -> bool | None:
-    """Say whether one of the first messages has a rotation; None where too few come in time."""
-    angles = _first_angles(wire, topic, values)
-    return None if angles is None else any(angles)
-
-
 def _first_angles(
-    wire: RosWire, topic: Topic, values: Callable[[Any], Values]
+    first: FirstMessages, topic: Topic, values: Callable[[Any], Values]
 ) -> list[tuple[float, float, float] | None] | None:
     """Return (roll, pitch, yaw) of the first messages, or None for no rotation; None where too few come."""
-    found = queue.SimpleQueue[tuple[float, float, float] | None]()
-    read = reader_of(topic.type, ros_types())
-
-    def take(payload: bytes) -> None:
+    read, found = reader_of(topic.type, ros_types()), []
+    for payload in first.of(topic.name, _LISTENED_TO, HEARD_WITHIN) or ():
         with contextlib.suppress(Exception):  # what cannot be read says nothing; the transport says so
-            found.put(rotation_of(*values(read(payload))))
-
-    wire.subscribe(topic.name, topic.type, take)
-    with contextlib.suppress(queue.Empty):
-        return [found.get(timeout=HEARD_WITHIN) for _ in range(_LISTENED_TO)]
-    return None
+            found.append(rotation_of(*values(read(payload))))
+    return found or None
 
 
 def only_positions(roles: Roles) -> bool:

@@ -14,6 +14,7 @@ from typing import Any
 
 from slipwise.errors import SlipwiseError
 from slipwise.live.cdr_reader import reader_of
+from slipwise.live.first_messages import FirstMessages, Take
 from slipwise.live.listeners import Listeners
 from slipwise.live.node_parameters import NodeParameters
 from slipwise.live.outputs import AppliedParameters, Output, Status
@@ -58,6 +59,7 @@ class RosTransport:
         cues: topics on which others say what they know.
         headed: poses have headings; those without are positions otherwise.
         simulated: whether /clock gives the time; None: where somebody publishes it.
+        first: messages of the topics that came before; None: none.
     """
 
     def __init__(  # noqa: PLR0913 (what it reads, and how)
@@ -70,7 +72,9 @@ class RosTransport:
         cues: CueTopics = _NO_CUES,
         headed: bool = True,
         simulated: bool | None = None,
+        first: FirstMessages | None = None,
     ) -> None:
+        self._first, self._takers = first or FirstMessages(wire), dict[str, Take]()
         self._wire, self._roles, self._options = wire, roles, options
         self._name, self._override, self._terrain = name, cues.override, cues.terrain
         self._headed, self._simulated = headed, simulated
@@ -111,6 +115,7 @@ class RosTransport:
         self._take_own(
             "predict", COMMANDS, lambda message, _: Request("predict", asked_of(message)), on_sample
         )
+        self._first.hand_over(self._takers)
         self._caller.start()
 
     def publish(self, output: Output) -> None:
@@ -233,10 +238,10 @@ class RosTransport:
         """Subscribe; a message that cannot be read is said once, and left out."""
         read = reader_of(kind, self._reading)
 
-        def take(payload: bytes) -> None:
+        def take(payload: bytes, arrived: float) -> None:
             try:
                 message = read(payload)
-                samples = convert(message, self._stamps.of(message, time.time(), topic))
+                samples = convert(message, self._stamps.of(message, arrived, topic))
             except Exception as problem:
                 reason = f"messages of {topic} that cannot be read"
                 on_sample(Unusable(reason, f"{reason} are left out: {problem}", kind=topic))
@@ -245,7 +250,10 @@ class RosTransport:
                 if sample is not None:
                     on_sample(sample)
 
-        self._wire.subscribe(topic, kind, take)
+        if topic in self._first.topics:
+            self._takers[topic] = take
+        else:
+            self._wire.subscribe(topic, kind, lambda payload: take(payload, time.time()))
 
     def _call_nodes(self) -> None:
         nodes = NodeParameters(self._wire, self._reading)

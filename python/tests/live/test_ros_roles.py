@@ -4,11 +4,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from slipwise.live.ros_roles import first_poses, only_positions, source_topics, with_oriented_imu
+from slipwise.live.first_messages import FirstMessages
+from slipwise.live.ros_roles import (
+    FirstPoses,
+    first_poses,
+    only_positions,
+    source_topics,
+    topics_heard,
+    with_oriented_imu,
+)
 from slipwise.live.ros_transport import CueTopics, RosTransport
 from slipwise.live.samples import Gyro, Pose, Sample
 from slipwise.live.wires.ros_types import ros_types
@@ -99,7 +108,8 @@ def roles(
 def test_an_imu_without_an_orientation_gives_no_headings(oriented: bool) -> None:
     said: list[str] = []
     wire = Wire({"/imu": [imu(oriented=oriented)] * 3})
-    found = with_oriented_imu(wire, roles(FIX, headed=True, gyro=True), said.append)
+    chosen = roles(FIX, headed=True, gyro=True)
+    found = with_oriented_imu(FirstMessages(wire, topics_heard(chosen)), chosen, said.append)
     assert only_positions(found) is not oriented
     assert found.gyro == GYRO
     assert said == ([] if oriented else ["/imu has no orientation: its yaw rates are used"])
@@ -118,11 +128,13 @@ def lidar(w: float, qx: float = 0.0) -> bytes:
 def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float) -> None:
     said: list[str] = []
     wire = Wire({"/lidar": [lidar(w)] * 3})
-    positions, attitude = first_poses(wire, roles(LIDAR), said.append)
+    first = FirstMessages(wire, topics_heard(roles(LIDAR)))
+    positions, attitude = first_poses(first, roles(LIDAR), said.append)
     assert positions is (w == 0.0)
     assert not attitude
     assert said == (["the quaternions of /lidar are no rotations: positions only"] if positions else [])
-    transport = RosTransport(wire, roles(LIDAR), LogOptions(), name="slipwise", headed=not positions)
+    options, headed = LogOptions(), not positions
+    transport = RosTransport(wire, roles(LIDAR), options, name="slipwise", headed=headed, first=first)
     found: list[Sample] = []
     transport.subscribe(found.append)
     poses = [pose for pose in found if isinstance(pose, Pose)]
@@ -131,11 +143,30 @@ def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float)
 
 
 def test_poses_with_a_roll_or_a_pitch_are_learned_from_with_terms_of_gravity() -> None:
-    tilted = Wire({"/lidar": [lidar(1.0), lidar(0.96, 0.28), lidar(1.0)]})
-    assert first_poses(tilted, roles(LIDAR), print) == (False, True)
-    level, tilted = [imu(oriented=True)] * 3, [imu(oriented=False)] * 3
-    fix = roles(FIX, headed=True)
-    assert first_poses(Wire({"/imu": level}), fix, print) == first_poses(Wire({"/imu": tilted}), fix, print)
+    def seen(chosen: Roles, messages: dict[str, list[bytes]]) -> FirstPoses:
+        return first_poses(FirstMessages(Wire(messages), topics_heard(chosen)), chosen, print)
+
+    tilted = [lidar(1.0), lidar(0.96, 0.28), lidar(1.0)]
+    assert seen(roles(LIDAR), {"/lidar": tilted}) == (False, True)
+    fixes = roles(FIX, headed=True)
+    level, none = (seen(fixes, {"/imu": [imu(oriented=oriented)] * 3}) for oriented in (True, False))
+    assert level == none
+
+
+def test_what_came_before_it_was_known_how_it_is_read_is_learned_from_in_order() -> None:
+    wire = Wire({})
+    takers: dict[str, Callable[[bytes], None]] = {}
+    wire.subscribe = lambda topic, _kind, take, *, latched=False: takers.setdefault(topic, take)  # type: ignore[method-assign]
+    chosen = roles(LIDAR, others=(Topic("/mocap", POSE_STAMPED, 1),))
+    chosen = replace(chosen, wheel=None)
+    first = FirstMessages(wire, topics_heard(chosen))
+    for topic in ("/mocap", "/lidar", "/mocap"):
+        takers[topic](lidar(1.0))
+    found: list[Sample] = []
+    transport = RosTransport(wire, chosen, LogOptions(), name="slipwise", first=first)
+    transport.subscribe(found.append)
+    takers["/lidar"](lidar(1.0))
+    assert [sample.source for sample in found if isinstance(sample, Pose)] == ["/mocap", "", "/mocap", ""]
 
 
 def samples_of(taken: Roles, messages: dict[str, list[bytes]]) -> list[Sample]:
