@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from slipwise import _core, calibration, evaluation, prediction
 from slipwise.calibration import Settings
+from slipwise.calibration.both_inputs import calibrate_inputs
 from slipwise.evaluation import Evaluation, EvaluationOptions, ModelComparison, compare_models
 from slipwise.ground import Ground, Pose
 from slipwise.logs import Inputs, Log, open_log
@@ -49,12 +50,13 @@ def calibrate(  # noqa: PLR0913 - options, most of them short for a setting
     estimator: str | None = None,
     smooth: bool = False,
 ) -> Calibration:
-    """Learn the motion model of the robot in `log`; see `slipwise.calibration.calibrate`.
+    """Learn the motion model of the robot in `log`; see `slipwise.calibration.both_inputs`.
 
     Args:
         log: what `open_log` returned, or what it takes: a path, or several.
         basis: "auto" or a named basis; short for `settings` with that basis.
-        input: "command" or "wheel"; by default commands where the log has them.
+        input: "command" or "wheel"; by default both where the log has both: the model is of commands, and
+            `model.of_input("wheel")` answers from wheel speeds.
         settings: what to learn and how.
         estimator: "average", or of the package slipwise-thesis "iekf", "delayed-state", "ekf-thesis",
             "gradient-descent", or "batch", which fits all windows at once, off-line; short for
@@ -66,7 +68,7 @@ def calibrate(  # noqa: PLR0913 - options, most of them short for a setting
         SettingsError: the basis or the estimator is unknown.
     """
     chosen, opened = (settings or Settings()).choosing(basis, estimator), _opened(log)
-    learned = calibration.calibrate(opened, input=input, settings=chosen, smooth=smooth)
+    learned = calibrate_inputs(opened, input=input, settings=chosen, smooth=smooth)
     parts = {field.name: getattr(learned, field.name) for field in fields(learned)}
     return Calibration(**parts, log=opened, settings=chosen)
 
@@ -132,6 +134,7 @@ def predict(  # noqa: PLR0913 - all but the first two are options
     terrain_ahead: TerrainAhead | None = None,
     force_age: float = 0.0,
     known_force: tuple[float, float] = (0.0, 0.0),
+    input: str | None = None,
 ) -> prediction.Path:
     """Predict the path of base_link under `commands`; see `slipwise.prediction.predict`.
 
@@ -148,6 +151,8 @@ def predict(  # noqa: PLR0913 - all but the first two are options
         terrain_ahead: surfaces along the path, a `TerrainAhead` of `slipwise.terrain_ahead`.
         force_age: how long ago the model was learned [s], where a force was learned beside slip.
         known_force: what pushes the robot, over its mass, ahead and to its left [m/s^2].
+        input: what `commands` are, "command" or "wheel" speeds, where the model answers from both; commands
+            by default.
 
     Raises:
         ModelError: the file is no model, or the model does not remember a surface ahead.
@@ -166,6 +171,7 @@ def predict(  # noqa: PLR0913 - all but the first two are options
         terrain_ahead=terrain_ahead,
         force_age=force_age,
         known_force=known_force,
+        input=input,
     )
 
 

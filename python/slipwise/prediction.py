@@ -114,6 +114,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     terrain_ahead: TerrainAhead | None = None,
     force_age: float = 0.0,
     known_force: tuple[float, float] = (0.0, 0.0),
+    input: str | None = None,
 ) -> Path:
     """Predict the path of base_link under `commands`, wherever on it the pose sensor sits.
 
@@ -141,6 +142,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             slip: it fades. A day later use `without_force`.
         known_force: what pushes the robot all along, over its mass, ahead and to its left [m/s^2]; it acts
             where the model has terms of gravity, on level ground.
+        input: what `commands` are, "command" or "wheel" speeds, where the model answers from both; by
+            default commands.
 
     Raises:
         ModelError: the model does not remember a surface ahead.
@@ -149,7 +152,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             leaves the map of elevations, or a force is not finite, of the future or on a slope.
     """
     _check_force(force_age, known_force, ground)
-    model = model.body
+    model = model.of_input(input).body
     inputs = commands if isinstance(commands, Inputs) else _inputs(commands, axes_of(model))
     if not (np.isfinite(horizon) and horizon > 0.0):
         raise SettingsError("the horizon must be positive seconds", advice="such as horizon=5.0")

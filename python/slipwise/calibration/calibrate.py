@@ -33,7 +33,7 @@ from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.shortage import shortage_advice, silence
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
-from slipwise.calibration.unused_measurements import unused_measurements
+from slipwise.calibration.unused_measurements import unused_measurements, unused_wheels
 from slipwise.calibration.verdict import LogFacts
 from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import LogError, ModelError, SettingsError
@@ -112,6 +112,7 @@ def calibrate_by(
             *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.judged),
             *(source.sentence() for source in learned.sources),
             *unused_measurements(log, settings, smooth=smooth),
+            *unused_wheels(log, settings, learned.kept, input_name),
         ),
         smooth_windows(learned.kept, windows, settings) if smooth else None,
         learned.predictions if settings.estimator == AVERAGE else (),

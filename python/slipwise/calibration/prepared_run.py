@@ -188,7 +188,7 @@ def choose_input(log: Log, asked: str | None = None) -> str:
     """
     if asked is not None:
         return input_name_of(asked, where="--input")
-    return next(iter(_input_names(log)), "wheel")
+    return next(iter(input_names(log)), "wheel")
 
 
 def collect_windows(
@@ -225,9 +225,9 @@ def _nothing_to_use(log: Log, input_name: str) -> str:
             return "the robot never moves in this log: all its poses are the same"
         lost = "; ".join(f"{item.count} x {item.reason}" for item in _lost_poses(log))
         return f"no pose of the log can be used: {lost}" if lost else "the log has no poses"
-    if not _input_names(log):
+    if not input_names(log):
         return "the log has no commands and no wheel speeds"
-    if input_name in _input_names(log):
+    if input_name in input_names(log):
         return f"no run of the log has both {MANY[input_name]} and poses"
     return f"the log has no {input_name} input" if input_name == "wheel" else "the log has no commands"
 
@@ -252,18 +252,18 @@ def _advice(log: Log, input_name: str) -> str:
         if _lost_poses(log):
             return "look at what writes them, or name another pose topic with --pose-topic"
         return "record where the robot went (RTK, lidar, mocap), or name the pose topic with --pose-topic"
-    if input_name in _input_names(log):
+    if input_name in input_names(log):
         return f"record poses in the runs that have {MANY[input_name]}"
     if input_name in log.advice:
         return log.advice[input_name]
     name = f"name the topic with --{input_name}-topic, or the columns (see `slipwise inspect`)"
-    others = [other for other in _input_names(log) if other != input_name]
+    others = [other for other in input_names(log) if other != input_name]
     if others:
         return f"use --input {others[0]}, or {name}"
     return "record commands or wheel speeds; name their topic with --command-topic or --wheel-topic"
 
 
-def _input_names(log: Log) -> tuple[str, ...]:
+def input_names(log: Log) -> tuple[str, ...]:
     """Return the kinds of input that the log has."""
     found = {"command": [run.commands for run in log.runs], "wheel": [run.wheels for run in log.runs]}
     return tuple(

@@ -103,6 +103,7 @@ class Calibration:
     smoothed: SmoothedCourse | None = None  # where it was asked for
     predictions: tuple[Predictions, ...] = ()  # those judged, of each horizon; what `evaluate` makes again
     baseline: tuple[Predictions, ...] = ()  # of the kinematic baseline over the same stretches
+    other: Calibration | None = None  # from wheel speeds, where the model answers from both inputs
 
     def __repr__(self) -> str:
         state = "good" if self.verdict.good else "not good enough"

@@ -10,6 +10,24 @@ if TYPE_CHECKING:
     from slipwise.models import Model
 
 
+def without_bad_input(model: Model, target: str) -> tuple[Model, Model | None]:
+    """Return what may be exported of a model; also what is to be refused, where that is all.
+
+    Args:
+        model: which may answer from two inputs, each with its verdict.
+        target: a tool, or "all".
+    """
+    from slipwise.export.targets import find_target, for_target
+
+    parts = [model.of_input(name) for name in model.inputs]
+    if target != "all":
+        parts = [for_target(model, find_target(target))]
+    good = [part for part in parts if part.verdict.good]
+    if not good:
+        return model, parts[0]
+    return (model if len(good) == len(parts) else good[0].alone), None
+
+
 def say_refused(out: Output, model: Model, command: str) -> None:
     """Report that `command` wrote nothing, and why."""
     from slipwise.cli.document import head

@@ -143,6 +143,7 @@ def _exit_code(calibration: Calibration) -> int:
 
 def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dict[str, Any]:
     from slipwise.cli.document import calibration_part, head, log_part, verdict_part
+    from slipwise.cli.other_input import other_input_part
 
     verdict = {"exit_code": _exit_code(calibration), "verdict": verdict_part(calibration.verdict)}
     return (
@@ -152,6 +153,7 @@ def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dic
         | calibration_part(calibration)
         | log_part(log, calibration.left_out)
         | {"notes": list(calibration.notes)}
+        | other_input_part(calibration.model, calibration)
     )
 
 
@@ -186,6 +188,7 @@ def _show_memory(out: Output, given: Opened, learned: LearnedLogs) -> None:
 
 def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None:
     from slipwise.calibration.next_step import after_learning
+    from slipwise.cli.other_input import show_other_input
     from slipwise.cli.tables import (
         show_alarms,
         show_confounded,
@@ -206,6 +209,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     )
     show_summary(out, summary)
     show_verdict(out, calibration.verdict, after_learning(calibration.verdict, files["model"]))
+    show_other_input(out, calibration.model, files["model"])
     show_files(out, files)
     show_notes(out, calibration.notes)
     show_left_out(out, calibration.left_out)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from slipwise.cli.options import Json, takes_log_options
+from slipwise.cli.options import Json, ModelInput, takes_log_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,6 +34,7 @@ def compare(
         list[Path] | None,
         typer.Argument(metavar="[LOG...]", show_default=False, help="Logs to predict with both."),
     ] = None,
+    input_name: ModelInput = None,
     json: Json = None,
 ) -> int:
     """Say whether a new model predicts a log better than an old one, and what differs between them.
@@ -51,11 +52,14 @@ def compare(
     from slipwise.cli.output import Output
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.models.body_force import without_force
+    from slipwise.models.common_input import of_common_input
     from slipwise.models.difference import differences
+    from slipwise.models.inputs import MANY
 
     out = Output(json)
     refuse_unwritable(out.written_file, inputs=(first, second, *(logs or []), *log_options.files))
-    models = named_models([first, second])
+    named = named_models([first, second])
+    models = of_common_input(named, input_name)
     slips = {name: without_force(model) for name, model in models.items()}  # a force is of its day
     rows = differences(*slips.values())
     comparison = _compared(models, logs, log_options) if logs else None
@@ -63,6 +67,9 @@ def compare(
     if comparison is not None:
         _show_comparison(out, comparison)
     _show_differences(out, slips, rows)
+    if all(len(model.inputs) > 1 for model in named.values()) and input_name is None:
+        used, other = next(iter(named.values())).inputs
+        out.line(f"Compared from {MANY[used]}; both models answer from {MANY[other]} too: --input {other}.")
     return 0
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from slipwise.cli.options import Json, ModelFile, optional
+from slipwise.cli.options import Json, ModelFile, ModelInput, optional
 
 if TYPE_CHECKING:
     from slipwise.cli.output import Output
@@ -99,6 +99,7 @@ def export(
         Path | None,
         optional("FILE", "Your parameter file: show what changes in it; -o writes it, comments kept."),
     ] = None,
+    input_name: ModelInput = None,
     force: Annotated[bool, typer.Option("--force", help="Export a model with a bad verdict, too.")] = False,
     json: Json = None,
 ) -> int:
@@ -117,7 +118,7 @@ def export(
       slipwise export commands.yaml --ardupilot 4.6 --logged ATC_STR_RAT_FF=0.2
       slipwise export model.yaml --to c-header -o model.h --json -
     """  # noqa: D301
-    from slipwise.cli.bad_verdict import say_refused
+    from slipwise.cli.bad_verdict import say_refused, without_bad_input
     from slipwise.cli.export_merge import merge_into
     from slipwise.cli.output import Output
     from slipwise.cli.writable import refuse_unwritable
@@ -147,10 +148,13 @@ def export(
     )
     no_target = merge is not None and px4 is None and ardupilot is None
     target = to or (TargetName.all if no_target else _of_firmware(px4, ardupilot))
-    learned = load_model(model) if surface is None else on_surface(load_model(model), surface)
-    if not learned.content.verdict.good and not force:
-        say_refused(out, learned, "export")
-        return 1
+    learned = load_model(model, input=input_name)
+    learned = learned if surface is None else on_surface(learned, surface)
+    if not force:
+        learned, bad = without_bad_input(learned, target.value)
+        if bad is not None:
+            say_refused(out, bad, "export")
+            return 1
     if merge is not None:
         files = (merge, None if output == Path() else output)
         return merge_into(out, learned, model.name, target.value, options, files)
@@ -159,7 +163,7 @@ def export(
     refuse_unwritable(*paths.values(), out.written_file, inputs=[model])
     for written, exported in made.files:
         write_text_whole(paths[written.name], exported.text)
-    _report(out, made, paths)
+    _report(out, learned, made, paths)
     return 0
 
 
@@ -223,10 +227,11 @@ def _paths(made: _Made, output: Path, to: TargetName) -> dict[str, Path]:
     return {target.name: output / target.file_name if into_folder else output for target, _ in made.files}
 
 
-def _report(out: Output, made: _Made, paths: dict[str, Path]) -> None:
+def _report(out: Output, model: Model, made: _Made, paths: dict[str, Path]) -> None:
     from slipwise.cli.document import head
     from slipwise.cli.output import Column
     from slipwise.cli.tables import show_files
+    from slipwise.models.inputs import MANY
 
     document = {
         "exit_code": 0,
@@ -241,6 +246,10 @@ def _report(out: Output, made: _Made, paths: dict[str, Path]) -> None:
         for target, exported in made.files
         for name, value in exported.values.items()
     ]
+    either = [target.name for target, _ in made.files if target.input is None]
+    if either and len(model.inputs) > 1:
+        used, other = model.inputs
+        out.line(f"For {MANY[used]}: {', '.join(either)}; --input {other} writes these for {MANY[other]}.")
     out.table("Exported", (Column("for", whole=True), Column("parameter"), Column("value")), rows)
     for target, exported in made.files:
         for name, reason in exported.kept.items():

@@ -94,7 +94,8 @@ def learn_logs(given: Opened, progress: Callable[[float], None]) -> LearnedLogs:
         SettingsError: a basis is unknown, or the estimator has no memory of surfaces.
         ModelError: learning cannot go on from the model.
     """
-    from slipwise.calibration import Settings, calibrate
+    from slipwise.calibration import Settings
+    from slipwise.calibration.both_inputs import calibrate_inputs
     from slipwise.calibration.calibrate_sequence import calibrate_sequence, settings_of
 
     asked = given.asked
@@ -107,8 +108,9 @@ def learn_logs(given: Opened, progress: Callable[[float], None]) -> LearnedLogs:
             calibration, _ = calibrate_from(
                 given.log, known, input=asked.input, settings=settings, progress=progress
             )
+            calibration = _with_one_input(calibration, given.log, asked.input, "a prior is of one input")
             return LearnedLogs(calibration, settings, None)
-        calibration = calibrate(
+        calibration = calibrate_inputs(
             given.log, input=asked.input, settings=settings, smooth=asked.smooth, progress=progress
         )
         return LearnedLogs(calibration, settings, None)
@@ -117,4 +119,15 @@ def learn_logs(given: Opened, progress: Callable[[float], None]) -> LearnedLogs:
     calibration, sequence = calibrate_sequence(
         given.logs, input=asked.input, settings=settings, options=given.begin, progress=progress
     )
+    calibration = _with_one_input(calibration, given.log, asked.input, "surfaces are of one input")
     return LearnedLogs(calibration, settings, sequence)
+
+
+def _with_one_input(calibration: Calibration, log: Log, asked: str | None, why: str) -> Calibration:
+    """Say why a model of commands is all that is learned of a log that has wheel speeds too."""
+    from slipwise.calibration.both_inputs import one_input_alone, with_note
+    from slipwise.calibration.prepared_run import input_names
+
+    if asked is not None or len(input_names(log)) < 2 or calibration.model.content.input != "command":
+        return calibration
+    return with_note(calibration, one_input_alone(why))

@@ -49,7 +49,17 @@ Input = Annotated[
         parser=_input_name,
         metavar="[command|wheel]",
         show_default=False,
-        help="Learn from commands or wheel speeds; default: commands where the log has them.",
+        help="Learn from commands or wheel speeds alone; default: commands where the log has them.",
+    ),
+]
+ModelInput = Annotated[
+    str | None,
+    typer.Option(
+        "--input",
+        parser=_input_name,
+        metavar="[command|wheel]",
+        show_default=False,
+        help="Of a model that answers from both: the input to use; default: commands.",
     ),
 ]
 Basis = Annotated[

@@ -5,14 +5,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from slipwise.cli.options import Json, ModelFile
+from slipwise.cli.options import Json, ModelFile, ModelInput
 
 if TYPE_CHECKING:
     from slipwise.models import Model
     from slipwise.models.summary import Summary
 
 
-def show(model: ModelFile, json: Json = None) -> int:
+def show(model: ModelFile, input_name: ModelInput = None, json: Json = None) -> int:
     """Say what a model has learned, how well it predicts, where it comes from and where it holds.
 
     Numbers stand in the sentences where they are identified; the table has all of them.
@@ -22,6 +22,7 @@ def show(model: ModelFile, json: Json = None) -> int:
       slipwise show model.yaml
       slipwise show model.yaml --json - | jq '.parameters[] | select(.identified)'
     """  # noqa: D301
+    from slipwise.cli.other_input import show_other_input
     from slipwise.cli.output import Output
     from slipwise.cli.tables import show_parameters, show_summary, show_surfaces, show_verdict
     from slipwise.cli.writable import refuse_unwritable
@@ -30,7 +31,7 @@ def show(model: ModelFile, json: Json = None) -> int:
 
     out = Output(json)
     refuse_unwritable(out.written_file, inputs=[model])
-    learned = load_model(model)
+    learned = load_model(model, input=input_name)
     summary = summarise(learned)
     out.document(_document(learned, summary))
     content = learned.content
@@ -39,6 +40,7 @@ def show(model: ModelFile, json: Json = None) -> int:
     show_verdict(out, content.verdict)
     for line in _origin(learned):
         out.line(line)
+    show_other_input(out, learned, model)
     show_parameters(out, summary.parameters)
     if content.surfaces:
         show_surfaces(out, content.surfaces)
@@ -69,6 +71,7 @@ def _document(model: Model, summary: Summary) -> dict[str, Any]:
     from dataclasses import asdict
 
     from slipwise.cli.document import head, surfaces_part
+    from slipwise.cli.other_input import other_input_part
 
     content = model.content
     return head("show") | {
@@ -81,4 +84,5 @@ def _document(model: Model, summary: Summary) -> dict[str, Any]:
         "range": content.range.model_dump(),
         "provenance": content.provenance.model_dump(),
         "surfaces": surfaces_part(model),
+        **other_input_part(model),
     }

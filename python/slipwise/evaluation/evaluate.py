@@ -26,6 +26,7 @@ from slipwise.evaluation.result import Evaluation
 from slipwise.evaluation.scoring import scores_of
 from slipwise.logs.findings.checks import findings_of
 from slipwise.logs.log import Log, has_course
+from slipwise.models.common_input import of_common_input
 from slipwise.models.model import Model
 
 DEFAULT_HORIZONS = (1.0, 2.0, 5.0)  # s
@@ -68,7 +69,8 @@ def evaluate(
         SettingsError: a method, a basis or a horizon is wrong.
     """
     settings, options = for_the_ground_of(log, settings or Settings()), options or EvaluationOptions()
-    input_name, models = _input_name(log, input, options.models), options.models
+    models = of_common_input(options.models, input)
+    input_name, options = _input_name(log, input, models), replace(options, model=models)
     refuse_names_of_methods(models)
     contest, notes = contest_of(log, input_name, settings, options)
     methods = tuple(dict.fromkeys((*(options.methods or method_names(contest)), *models)))
@@ -112,6 +114,7 @@ def _made(name: str, options: EvaluationOptions, contest: Contest) -> tuple[Pred
 
 
 def _input_name(log: Log, input_name: str | None, models: Mapping[str, Model]) -> str:
+    input_name = None if input_name is None else choose_input(log, input_name)
     for name, model in models.items():
         learned = model.content.input
         if input_name is not None and learned != input_name:

@@ -19,6 +19,7 @@ from slipwise.export.parameter_file import ParameterFile, Value
 from slipwise.export.robot_localization import robot_localization
 from slipwise.models.axes import refuse_sideways
 from slipwise.models.body_force import without_force
+from slipwise.models.inputs import InputName
 from slipwise.models.model import Model
 
 
@@ -40,6 +41,7 @@ class Target:
     file_name: str
     make: Callable[[Model, ExportOptions, list[str]], Exported]
     sideways: bool = False  # whether the file can hold a sideways speed
+    input: InputName | None = None  # that its numbers are of; None: of either
 
 
 def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callable[..., Exported]:
@@ -63,11 +65,11 @@ def _c_header(model: Model, _: ExportOptions, origin: list[str]) -> Exported:
 
 
 TARGETS = (
-    Target("diff-drive", "diff_drive_controller.yaml", _parameters(diff_drive)),
-    Target("mppi", "nav2_mppi.yaml", _parameters(mppi)),
-    Target("amcl", "nav2_amcl.yaml", _parameters(amcl)),
+    Target("diff-drive", "diff_drive_controller.yaml", _parameters(diff_drive), input="wheel"),
+    Target("mppi", "nav2_mppi.yaml", _parameters(mppi), input="command"),
+    Target("amcl", "nav2_amcl.yaml", _parameters(amcl), input="wheel"),
     Target("robot-localization", "robot_localization.yaml", _parameters(robot_localization)),
-    Target("autoware", "autoware.param.yaml", _parameters(autoware)),
+    Target("autoware", "autoware.param.yaml", _parameters(autoware), input="wheel"),
     Target("px4", "px4.params", _firmware(px4)),
     Target("ardupilot", "ardupilot.param", _firmware(ardupilot)),
     Target("c-header", "model.h", _c_header, sideways=True),
@@ -103,13 +105,18 @@ def export_model(
         SettingsError: there is no such target.
     """
     made = find_target(target)
-    model = without_force(model)
+    model = without_force(for_target(model, made))
     model.refuse_throttle("exported files")
     if not made.sideways:
         refuse_sideways(model, f"files of {target}")
     if not force:
         refuse_bad_verdict(model)
     return made.make(model, options or ExportOptions(), origin_lines(model, name))
+
+
+def for_target(model: Model, target: Target) -> Model:
+    """Return the model from the input that a target takes; as it is where the target takes either."""
+    return model.of_input(target.input) if target.input in model.inputs else model
 
 
 def refuse_bad_verdict(model: Model) -> None:

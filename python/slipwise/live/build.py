@@ -137,6 +137,8 @@ def _start_model(path: str | None, input_name: str) -> Model | None:
     if path is None:
         return None
     model = model_in(path)
+    if input_name in model.inputs:
+        return model.of_input(input_name)
     if model.content.input != input_name:
         raise SettingsError(
             f"the start model was learned from {model.content.input}s, this node learns from {input_name}s",

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
@@ -21,6 +20,8 @@ from slipwise.frames import data_frame
 from slipwise.lazy_names import no_attribute
 from slipwise.models.car import car_of
 from slipwise.models.consistent_content import check_content
+from slipwise.models.file_text import file_text
+from slipwise.models.inputs import MANY, InputName, input_name_of
 from slipwise.models.limits import LimitsSection, core_limits, limits_of
 from slipwise.models.parameter_table import VECTOR, ParameterTable, PhysicalParameter, physical_parameters
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile, VerdictSection
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-_DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # the same text, several times faster in C
 _HINTS = {
     "predict": "slipwise.predict(model, commands, horizon=5.0)",
     "evaluate": "slipwise.evaluate(log, model=model)",
@@ -61,7 +61,8 @@ class Model:
         from slipwise.models.summary import summarise
 
         content = self.content
-        head = f"{content.slip.basis} from {content.input}s, {len(content.parameters)} parameters"
+        inputs = " and ".join(f"{name}s" for name in self.inputs)
+        head = f"{content.slip.basis} from {inputs}, {len(content.parameters)} parameters"
         return f"<Model: {head}. {summarise(self).sentences[0]}>"
 
     def __getattr__(self, name: str) -> Any:
@@ -115,6 +116,41 @@ class Model:
         rows = list(self.parameters.values())
         names = ("name", "value", "std", "unit", "identified")
         return data_frame({name: [getattr(row, name) for row in rows] for name in names})
+
+    @property
+    def inputs(self) -> tuple[InputName, ...]:
+        """What the model answers from, the input first that is meant where none is named."""
+        other = self.content.other_input
+        return (self.content.input,) if other is None else (self.content.input, other.input)
+
+    @cached_property
+    def _other(self) -> Model | None:
+        other = self.content.other_input
+        return None if other is None else Model(other)
+
+    @property
+    def alone(self) -> Model:
+        """The same without its other input."""
+        if self.content.other_input is None:
+            return self
+        return Model(self.content.model_copy(update={"other_input": None}))
+
+    def of_input(self, name: str | None = None) -> Model:
+        """Return the model that answers from one input, "command" or "wheel"; itself where none is named.
+
+        Raises:
+            ModelError: nothing was learned from this input.
+            SettingsError: there is no such input.
+        """
+        asked = self.content.input if name is None else input_name_of(name)
+        if asked == self.content.input:
+            return self
+        if self._other is None:
+            raise ModelError(
+                f"the model was learned from {MANY[self.content.input]}, and nothing from {MANY[asked]}",
+                advice=f"give it {MANY[self.content.input]}, or calibrate a log that has {MANY[asked]}",
+            )
+        return self._other
 
     @cached_property
     def motion(self) -> _core.MotionModel:
@@ -286,36 +322,22 @@ class Model:
 
     def to_yaml(self) -> str:
         """Return the text of the model file."""
-        head = (
-            f"# slipwise motion model, schema {SCHEMA_VERSION}; SI units; slip adds to the commanded twist.\n"
-        )
-        content = self.content.model_dump(mode="json")
-        if not content["verdict"]["force"]:
-            del content["verdict"]["force"]
-        for key in ("surfaces", "labels", "body_force", "wheelbase", "limit_gains", "branches", "message"):
-            if not content[key]:
-                del content[key]
-        content["range"] = {key: value for key, value in content["range"].items() if value is not None}
-        for row in content["parameters"]:
-            for key in ("at", "input", "sensor", "branch"):
-                if row[key] in (None, ""):
-                    del row[key]
-        for surface in content.get("surfaces", ()):
-            if not surface["classes"]:
-                del surface["classes"]
-        if content["provenance"]["prior"] is None:
-            del content["provenance"]["prior"]
-        body = yaml.dump(content, Dumper=_DUMPER, sort_keys=False, width=120, default_flow_style=None)
-        return head + body
+        return file_text(self.content)
 
 
-def load_model(path: str | Path) -> Model:
+def load_model(path: str | Path, *, input: str | None = None) -> Model:
     """Read a model file.
 
+    Args:
+        path: of the file.
+        input: "command" or "wheel", where the model answers from both; by default the one it is meant for.
+
     Raises:
-        ModelError: the file is missing, not plain YAML, or does not fit this schema version.
+        ModelError: the file is missing, not plain YAML, does not fit this schema version, or knows nothing
+            of this input.
+        SettingsError: there is no such input.
     """
-    return _model_of(read_yaml(Path(path)), str(path))
+    return _model_of(read_yaml(Path(path)), str(path)).of_input(input)
 
 
 def parse_model(text: str, *, where: str) -> Model:

@@ -293,6 +293,14 @@ class ModelFile(Section):
     labels: LabelSection | None = None  # of surfaces, where there are some
     branches: dict[str, NotNegative] = {}  # weights of the branches of the slip
     message: dict[str, str] = {}  # fields of a message that inputs are read from, by axis
+    other_input: ModelFile | None = None  # the same robot from its other input, learned from the same logs
+
+    @model_validator(mode="after")
+    def _inputs_differ(self) -> ModelFile:
+        other = self.other_input
+        if other is not None and (other.input == self.input or other.other_input is not None):
+            raise ValueError("other_input must be of the input that the model itself is not of")
+        return self
 
     @model_validator(mode="after")
     def _surfaces_have_this_slip(self) -> ModelFile:

@@ -68,7 +68,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     """Roll out `commands` through `model`: limits, actuator model, slip of any basis, exact steps.
 
     Args:
-        model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
+        model: a learned model. Commands are of the kind that it was learned from (`model.of_input`), as speed
+            and yaw rate;
             those of a car with a steering angle are v and v tan(angle) / wheelbase, whose lags act on
             speed and steering. Those of a
             model of throttle and steering are these, in [-1, 1], as the past of the start is.

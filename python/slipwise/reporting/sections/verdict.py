@@ -7,6 +7,7 @@ import math
 
 from slipwise.calibration.next_step import after_learning, check_command, export_command, verdict_label
 from slipwise.calibration.result import Verdict
+from slipwise.models.inputs import MANY
 from slipwise.models.parameter_table import physical_name
 from slipwise.models.summary import BETTER, summarise
 from slipwise.reporting.contents import PLAIN, Contents
@@ -38,7 +39,19 @@ class VerdictSection:
         columns = [_column("What to do", _to_do(contents)), _column("What was learned", _learned(contents))]
         if drawn:
             columns.insert(0, _column("What was predicted: a typical path", drawn))
-        return banner + _tiles(contents) + f'<div class="columns">{"".join(columns)}</div>'
+        shown = f'<div class="columns">{"".join(columns)}</div>'
+        return banner + _tiles(contents) + shown + _other_input(contents)
+
+
+def _other_input(contents: Contents) -> str:
+    """What the same model says from its other input, folded away; empty where it has none."""
+    model = contents.calibration.model
+    if len(model.inputs) < 2:
+        return ""
+    other = model.of_input(model.inputs[1])
+    label = verdict_label(other.verdict)[0]
+    said = (*summarise(other).sentences, f"{label} {other.verdict.sentence}")
+    return details(f"The same model from {MANY[other.content.input]}", bullets(said))
 
 
 def _tiles(contents: Contents) -> str:

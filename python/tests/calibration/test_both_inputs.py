@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A log with commands and wheel speeds gives one model, which answers from either."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sample_logs import Drive, simulated_log
+
+import slipwise as sw
+from slipwise.calibration import Calibration, calibrate
+from slipwise.calibration.both_inputs import calibrate_inputs
+from slipwise.errors import ModelError
+from slipwise.logs import Log
+
+DRIVE = Drive(seconds=90.0, lag=0.3, delay=0.2)
+
+
+@cache
+def learned() -> Calibration:
+    return calibrate_inputs(simulated_log(DRIVE))
+
+
+def with_wheels(log: Log, part: slice) -> Log:
+    """Return the log with some of its wheel speeds."""
+    run = log.runs[0]
+    w = run.wheels
+    assert w is not None
+    fewer = replace(w, t=w.t[part], v=w.v[part], vy=w.vy[part], omega=w.omega[part])
+    return replace(log, runs=(replace(run, wheels=fewer),))
+
+
+def test_each_input_is_what_is_learned_from_it_alone() -> None:
+    log, both = simulated_log(DRIVE), learned().model
+    assert both.inputs == ("command", "wheel")
+    for name in both.inputs:
+        alone = calibrate(log, input=name).model
+        assert both.of_input(name).alone.to_yaml() == alone.to_yaml()
+
+
+def test_a_file_keeps_both(tmp_path: Path) -> None:
+    path = learned().model.save(tmp_path / "model.yaml")
+    assert sw.load_model(path).to_yaml() == path.read_text(encoding="utf-8")
+    assert sw.load_model(path, input="wheels").content.input == "wheel"
+
+
+def test_the_caller_chooses_what_predictions_take() -> None:
+    model, commands = learned().model, np.array([(0.0, 1.0, 0.4)])
+    ends = {name: sw.predict(model, commands, horizon=2.0, input=name).end for name in model.inputs}
+    assert np.array_equal(ends["command"], sw.predict(model, commands, horizon=2.0).end)
+    assert np.array_equal(ends["wheel"], sw.predict(model.of_input("wheel"), commands, horizon=2.0).end)
+    assert ends["wheel"][0] > ends["command"][0]  # wheels have no lag and no delay
+
+
+def test_each_exported_file_takes_the_input_that_it_needs() -> None:
+    model, options = learned().model, sw.ExportOptions(ros_distro="lyrical")
+
+    def values(of: sw.Model, target: str) -> object:
+        return sw.export_model(of, target, name="m", options=options, force=True).values
+
+    assert values(model, "diff-drive") == values(model.of_input("wheel"), "diff-drive")
+    assert values(model, "mppi") == values(model.of_input("command").alone, "mppi")
+
+
+def test_models_are_compared_from_an_input_that_both_have() -> None:
+    log, both = simulated_log(replace(DRIVE, seed=7)), learned().model
+    match = sw.compare(both, both.of_input("wheel"), log)
+    assert match.evaluation.input == "wheel"
+    assert sw.evaluate(log, model=both).input == "command"
+
+
+def test_a_model_of_one_input_says_that_it_has_no_other() -> None:
+    model = learned().model.of_input("wheel")
+    with pytest.raises(ModelError, match="learned from wheel speeds, and nothing from commands"):
+        model.of_input("command")
+
+
+def test_wheels_that_teach_nothing_are_said_and_leave_the_commands() -> None:
+    log = simulated_log(DRIVE)
+    echo = replace(log, runs=tuple(replace(run, wheels=run.commands) for run in log.runs))
+    wheels = len(log.runs[0].wheels or ())
+    few = with_wheels(log, slice(wheels - 3, wheels))
+    alone = calibrate_inputs(log, input="command")
+    for given, why in ((echo, "they echo the commands"), (few, "no window")):
+        found = calibrate_inputs(given)
+        assert found.model.inputs == ("command",), why
+        said = [note for note in found.notes if "No model of its own is learned from wheel speeds" in note]
+        assert len(said) == 1, found.notes
+        assert why in said[0], said
+    assert not any("No model of its own" in note for note in alone.notes)
