@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from slipwise import _core
 from slipwise.calibration.learned_log import (
@@ -128,17 +129,8 @@ def learn_sequence(
     for place, drive in enumerate(drives):
         cues = _begin_drive(learner, drive, place, options)
         runs += drive
-        held_out: list[list[_core.HeldOutPrediction]] = [[] for _ in horizons]
-        windows: list[_core.LearnerEvent] = []
-        for done in pushed(learner, drive, cues):
-            for event in learner.events():
-                if event.prediction is not None:
-                    held_out[event.prediction.horizon].append(event.prediction)
-                elif event.kind == LEARNED:
-                    windows.append(event)
-            if progress is not None:
-                progress((place + done) / len(drives))
-        columns = [_core.HeldOutColumns(each) for each in held_out]
+        begun = partial(_share, progress, place, len(drives))
+        columns, windows = _drive(learner, drive, horizons, cues, begun)
         visited.append(_visited(learner, predictions_of(columns, horizons, runs)[0], windows, runs))
         learned += windows if options.keep is not None else []
     bank = learner.surfaces()
@@ -150,6 +142,61 @@ def learn_sequence(
         learner,
         None if options.keep is None else learned_of(learner, learned, horizons, runs, options.keep),
     )
+
+
+def go_on(
+    drives: Sequence[tuple[PreparedRun, ...]],
+    settings: Settings,
+    horizons: Sequence[float],
+    *,
+    progress: Progress | None = None,
+) -> tuple[tuple[Predictions, ...], ...]:
+    """Push logs through one learner without a memory of surfaces: what a memory has to beat.
+
+    Args:
+        drives: the runs of each log, in the order of time.
+        settings: what to learn and how.
+        horizons: of the predictions [s].
+        progress: called with the fraction done, 0 to 1.
+
+    Returns:
+        The predictions of each log, one for each horizon.
+
+    Raises:
+        SettingsError: a basis or a term is unknown.
+    """
+    runs = tuple(run for drive in drives for run in drive)
+    learner = new_learner([run.run for run in runs], runs[0].input_name, settings, horizons)
+    found = []
+    for place, drive in enumerate(drives):
+        columns, _ = _drive(learner, drive, horizons, (), partial(_share, progress, place, len(drives)))
+        found.append(predictions_of(columns, horizons, runs)[0])
+    return tuple(found)
+
+
+def _drive(
+    learner: _core.MotionLearner,
+    drive: tuple[PreparedRun, ...],
+    horizons: Sequence[float],
+    cues: Sequence[tuple[Cue, ...]],
+    progress: Progress,
+) -> tuple[list[_core.HeldOutColumns], list[_core.LearnerEvent]]:
+    """Push a log; return what was predicted at each horizon, and what was learned."""
+    held_out: list[list[_core.HeldOutPrediction]] = [[] for _ in horizons]
+    windows: list[_core.LearnerEvent] = []
+    for done in pushed(learner, drive, cues):
+        for event in learner.events():
+            if event.prediction is not None:
+                held_out[event.prediction.horizon].append(event.prediction)
+            elif event.kind == LEARNED:
+                windows.append(event)
+        progress(done)
+    return [_core.HeldOutColumns(each) for each in held_out], windows
+
+
+def _share(progress: Progress | None, place: int, count: int, done: float) -> None:
+    if progress is not None:
+        progress((place + done) / count)
 
 
 def _begun(

@@ -77,30 +77,56 @@ def _write_page(path: Path, logs: list[Log], sequence: SequenceEvaluation) -> Pa
 
 
 def _show(out: Output, sequence: SequenceEvaluation) -> None:
-    columns = ("windows", "position [m]", "heading [rad]", "first ten [m]", "[rad]", "baseline [m]", "[rad] ")
+    going_on = bool(sequence.went_on)
+    columns = (
+        "windows",
+        "m, rad",
+        "first ten",
+        *(("going on", "first ten ") if going_on else ()),
+        "baseline",
+    )
     rows = [
         (
             visit.log,
             visit.surface,
             f"{visit.windows}",
-            f"{visit.position:.3f}",
-            f"{visit.heading:.3f}",
-            f"{visit.first_position:.3f}",
-            f"{visit.first_heading:.3f}",
-            f"{visit.baseline_position:.3f}",
-            f"{visit.baseline_heading:.3f}",
+            _pair(visit.position, visit.heading),
+            _pair(visit.first_position, visit.first_heading),
+            *((_pair(visit.going_on_position, visit.going_on_heading),) if going_on else ()),
+            *((_pair(visit.going_on_first_position, visit.going_on_first_heading),) if going_on else ()),
+            _pair(visit.baseline_position, visit.baseline_heading),
         )
         for visit in sequence.visits()
     ]
     out.table(
-        "Mean errors of auto",
+        "Mean errors of position and heading with a memory of surfaces",
         (Column("log"), Column("surface"), *(Column(name, True) for name in columns)),
         rows,
     )
+    if sequence.gain is not None:
+        out.line(_of_the_memory(*sequence.gain))
     from slipwise.cli.tables import show_memory_changes, show_surfaces
 
     show_surfaces(out, sequence.learned.surfaces)
     show_memory_changes(out, sequence.names, sequence.learned)
+
+
+def _pair(position: float, heading: float) -> str:
+    return f"{position:.3f} {heading:.3f}"
+
+
+def _of_the_memory(position: float, heading: float) -> str:
+    """Say whether the memory pays, against one learner that goes on from log to log."""
+    if max(position, heading) < 1.0:
+        worth = "the memory pays"
+    elif min(position, heading) >= 1.0:
+        worth = "leave --memory out, unless you need the names of surfaces"
+    else:
+        worth = "better at the one, worse at the other"
+    return (
+        f"With the memory {position:.2f} of the position and {heading:.2f} of the heading error of one "
+        f"learner that goes on without: {worth}."
+    )
 
 
 def _document(sequence: SequenceEvaluation, files: dict[str, Path]) -> dict[str, Any]:

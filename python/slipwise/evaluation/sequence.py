@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions, learn_sequence
+from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions, go_on, learn_sequence
+from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import choose_input, prepare_run
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.sloping_ground import for_the_ground_of
@@ -24,7 +26,11 @@ FIRST = 10  # windows that tell how soon a surface is known
 
 @dataclass(frozen=True)
 class VisitScore:
-    """One log of a sequence at the longest horizon: mean errors, and those of the kinematic baseline."""
+    """One log of a sequence at the longest horizon: mean errors, and those of others.
+
+    Others are the kinematic baseline, and the same learner that goes on from log to log without a memory;
+    not a number where the sequence begins with a model, which that one cannot.
+    """
 
     log: str
     surface: str  # on which it ended
@@ -35,6 +41,10 @@ class VisitScore:
     first_heading: float  # rad
     baseline_position: float  # m, of all windows
     baseline_heading: float  # rad
+    going_on_position: float  # m, of all windows
+    going_on_heading: float  # rad
+    going_on_first_position: float  # m, of the first ten windows
+    going_on_first_heading: float  # rad
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +54,13 @@ class SequenceEvaluation:
     evaluations: tuple[Evaluation, ...]
     learned: LearnedSequence
     names: tuple[str, ...]  # of the logs
+    went_on: tuple[tuple[Predictions, ...], ...] = ()  # of each log, by the learner without a memory
 
     def visits(self) -> tuple[VisitScore, ...]:
         """Score each log at its longest horizon."""
-        visited = zip(self.names, self.evaluations, self.learned.logs, strict=True)
-        return tuple(_visit(name, evaluation, log.surface) for name, evaluation, log in visited)
+        others = self.went_on or ((),) * len(self.names)
+        visited = zip(self.names, self.evaluations, self.learned.logs, others, strict=True)
+        return tuple(_visit(name, each, log.surface, went_on) for name, each, log, went_on in visited)
 
     @property
     def good(self) -> bool:
@@ -59,6 +71,19 @@ class SequenceEvaluation:
             return float(sum(visit.windows * getattr(visit, name) for visit in visits))
 
         return total("position") < total("baseline_position") and total("heading") < total("baseline_heading")
+
+    @property
+    def gain(self) -> tuple[float, float] | None:
+        """Errors of position and heading with the memory over those of going on without, of all windows."""
+        visits = self.visits()
+        found = []
+        for name in ("position", "heading"):
+            own, other = (
+                sum(visit.windows * getattr(visit, part) for visit in visits)
+                for part in (name, f"going_on_{name}")
+            )
+            found.append(own / other if other > 0.0 else math.nan)
+        return None if any(map(math.isnan, found)) else (found[0], found[1])
 
 
 def evaluate_sequence(
@@ -102,13 +127,14 @@ def evaluate_sequence(
     drives = [prepare_run(log, input_name) for _, log in logs]
     horizons = sorted(set(options.horizons))
     remembering = settings.model_copy(update={"basis": REMEMBERING, "estimator": AVERAGE})
+    chosen = remembering if memory.start else for_the_ground_of(logs[0][1], remembering)
+    said = progress or _nobody
     learned = learn_sequence(
-        drives,
-        remembering if memory.start else for_the_ground_of(logs[0][1], remembering),
-        horizons,
-        options=memory,
-        progress=None if progress is None else lambda done: progress("memory", done),
+        drives, chosen, horizons, options=memory, progress=lambda done: said("memory", done)
     )
+    went_on: tuple[tuple[Predictions, ...], ...] = ()
+    if memory.start is None:
+        went_on = go_on(drives, chosen, horizons, progress=lambda done: said("going on", done))
     evaluations = []
     for (_, log), visited in zip(logs, learned.logs, strict=True):
         made = {REMEMBERING: visited.predictions}
@@ -121,12 +147,17 @@ def evaluate_sequence(
                 progress=progress,
             )
         )
-    return SequenceEvaluation(tuple(evaluations), learned, tuple(name for name, _ in logs))
+    return SequenceEvaluation(tuple(evaluations), learned, tuple(name for name, _ in logs), went_on)
 
 
-def _visit(name: str, evaluation: Evaluation, surface: str) -> VisitScore:
+def _nobody(_name: str, _done: float) -> None:
+    """Nobody watches."""
+
+
+def _visit(name: str, evaluation: Evaluation, surface: str, went_on: tuple[Predictions, ...]) -> VisitScore:
     longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
     own, baseline = longest[REMEMBERING], longest["none"]
+    others = next((each for each in went_on if each.horizon == own.horizon), None)
     return VisitScore(
         log=name,
         surface=surface,
@@ -137,6 +168,10 @@ def _visit(name: str, evaluation: Evaluation, surface: str) -> VisitScore:
         first_heading=_mean(own.heading_error[:FIRST]),
         baseline_position=_mean(baseline.position_error),
         baseline_heading=_mean(baseline.heading_error),
+        going_on_position=math.nan if others is None else _mean(others.position_error),
+        going_on_heading=math.nan if others is None else _mean(others.heading_error),
+        going_on_first_position=math.nan if others is None else _mean(others.position_error[:FIRST]),
+        going_on_first_heading=math.nan if others is None else _mean(others.heading_error[:FIRST]),
     )
 
 

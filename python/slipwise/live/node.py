@@ -41,6 +41,7 @@ class LiveNode:
     def __init__(self, parts: NodeParts) -> None:
         self._parts = parts
         self._waiting: deque[Sample] = deque()
+        self._takes = False  # what waits; before, it is our own thread that may bring what came earlier
         self._driven = DrivenPath()
         self._stopped = threading.Event()
         self._last_odometry = -math.inf  # s, stamp
@@ -66,6 +67,7 @@ class LiveNode:
         self._next["works"] = time.monotonic() + WORKS_AFTER
         try:
             parts.transport.subscribe(self._arrive)
+            self._takes = True
             while not self._stopped.is_set():
                 if not self._take_some() and parts.transport.finished and not self._waiting:
                     break
@@ -92,7 +94,7 @@ class LiveNode:
 
     def _arrive(self, sample: Sample) -> None:
         """Called from the transport's threads."""
-        while len(self._waiting) >= MOST_WAITING and not self._stopped.is_set():
+        while len(self._waiting) >= MOST_WAITING and self._takes and not self._stopped.is_set():
             time.sleep(REST)
         self._waiting.append(sample)
 

@@ -61,7 +61,8 @@ def sequence_page(logs: Sequence[Log], sequence: SequenceEvaluation, *, title: s
         ),
         Part(
             "Each visit",
-            f"Mean errors of `{REMEMBERING}` at the longest horizon, held out, beside no slip at all.",
+            f"Mean errors of `{REMEMBERING}` at the longest horizon, held out, beside one learner that goes "
+            "on without a memory, and no slip at all.",
             _visits(sequence),
         ),
         Part("How to make this again", "The command line.", paragraph(made)),
@@ -151,6 +152,8 @@ def _visits(sequence: SequenceEvaluation) -> str:
         "heading [rad]",
         "first ten [m]",
         "[rad]",
+        "going on [m]",
+        "[rad]",
         "no slip [m]",
         "[rad]",
     )
@@ -166,6 +169,8 @@ def _visits(sequence: SequenceEvaluation) -> str:
                     visit.heading,
                     visit.first_position,
                     visit.first_heading,
+                    visit.going_on_position,
+                    visit.going_on_heading,
                     visit.baseline_position,
                     visit.baseline_heading,
                 )

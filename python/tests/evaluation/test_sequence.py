@@ -59,6 +59,18 @@ def test_the_first_windows_of_a_second_visit_are_predicted_better_than_from_noth
     assert sequence.visits()[3].first_heading < 0.5 * from_nothing
 
 
+def test_beside_a_memory_stands_one_learner_that_goes_on_without(sequence: SequenceEvaluation) -> None:
+    visits, logs = sequence.visits(), [drive(slip, k) for k, slip in enumerate((0.1, 0.5, 0.1, 0.5))]
+    together = Log(tuple(run for log in logs for run in log.runs))
+    alone = evaluate(together, options=EvaluationOptions(horizons=(2.0,), methods=("none", "auto")))
+    errors = next(p for p in alone.predictions if p.method == "auto").position_error
+    ends = np.cumsum([visit.windows for visit in visits])[:-1]
+    means = [float(each.mean()) for each in np.split(errors, ends)]
+    assert [visit.going_on_position for visit in visits] == means
+    assert sequence.gain is not None
+    assert sequence.gain[1] < 1.0
+
+
 def test_the_first_log_is_predicted_as_without_a_memory(sequence: SequenceEvaluation) -> None:
     alone = evaluate(drive(0.1, 0), options=EvaluationOptions(horizons=(1.0, 2.0), methods=("none", "auto")))
     for own, other in zip(sequence.evaluations[0].predictions, alone.predictions, strict=True):
