@@ -107,7 +107,7 @@ def test_a_bag_played_by_a_real_node_gives_the_model_of_the_bag(
 ) -> None:
     output = tmp_path / "live.yaml"
     lines, command = messages(bag, tmp_path / "lines"), command_of(transport, ros_python, output)
-    wanted = without_origin(sw.calibrate(sw.open_log(bag)).model.to_yaml())
+    wanted = without_origin(sw.calibrate(sw.open_log(bag), input="command").model.to_yaml())
     for rate in RATES:
         found = played(lines, ros_python, command, rate)
         if without_origin(output.read_text()) == wanted:

@@ -95,7 +95,7 @@ def test_a_managed_node_learns_what_calibrate_does_and_answers(ros_python: Path,
     bag, cache = tmp_path / "drive.mcap", tmp_path / "cache"
     sw.save_log(later(simulated_log(SLIP), 100.0), bag)
     lines = messages(bag, tmp_path / "lines")
-    wanted = without_origin(sw.calibrate(sw.open_log(bag)).model.to_yaml())
+    wanted = without_origin(sw.calibrate(sw.open_log(bag), input="command").model.to_yaml())
     with (
         slipwise_ros(ros_python, cache) as node,
         Peer(ros_python, "lifecycle_node.py", NODE, environment=ROS) as peer,
