@@ -14,6 +14,7 @@ from slipwise.calibration.judge import Judged
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.shares import shares_of
 from slipwise.models import schema
 from slipwise.models.body_force import force_names
 from slipwise.models.car import car_rows
@@ -54,6 +55,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         slip_disturbance=_slip_disturbance(learned.kept, facts.settings.segment_length(facts.input_name)),
         body_force=_body_force(motion, facts.settings),
         range=_range(facts.range, learned),
+        shares=_shares(learned, facts),
         weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
         provenance=schema.Provenance(
             slipwise_version=_version(),
@@ -131,6 +133,14 @@ def _range(inputs: schema.Range, learned: Learned) -> schema.Range:
             "body": body,
         }
     )
+
+
+def _shares(learned: Learned, facts: ModelFacts) -> schema.Shares | None:
+    """What arrives of commands that are speeds and yaw rates, where a learner kept the windows of the log."""
+    if facts.input_name != "command" or learned.evidence is None or learned.car is not None:
+        return None
+    sensor = facts.settings.sensor_extrinsics
+    return shares_of(learned.evidence.windows, sensor_y=sensor.y, sensor_yaw=sensor.yaw)
 
 
 def _noise(learned: Learned, settings: Settings) -> schema.Noise:

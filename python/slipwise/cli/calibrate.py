@@ -196,6 +196,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
         show_left_out,
         show_notes,
         show_parameters,
+        show_shares,
         show_summary,
         show_verdict,
     )
@@ -216,4 +217,5 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     if calibration.history is not None:
         show_alarms(out, calibration.history)
     show_confounded(out, calibration.verdict.confounded)
+    show_shares(out, calibration.model)
     show_parameters(out, summary.parameters)

@@ -43,6 +43,12 @@ def surfaces_part(model: Model) -> list[dict[str, Any]]:
     return [surface.model_dump(exclude=learned) for surface in model.content.surfaces]
 
 
+def shares_part(model: Model) -> dict[str, Any] | None:
+    """Return what arrives of commands, by axis; None where the log does not say it."""
+    shares = model.content.shares
+    return None if shares is None else shares.model_dump(exclude_none=True)
+
+
 def memory_part(learned: LearnedSequence) -> dict[str, Any]:
     """Return the surfaces that are remembered after a sequence of logs, and what labels were worth."""
     return {
@@ -70,6 +76,7 @@ def calibration_part(calibration: Calibration) -> dict[str, Any]:
         "parameters": [parameter.model_dump() for parameter in content.parameters],
         "limits": None if limits is None else limits.model_dump(),
         "held_out": content.verdict.held_out.model_dump() if content.verdict.held_out else None,
+        "shares": shares_part(calibration.model),
         "learned_segments": content.provenance.learned_segments,
         "learned_seconds": content.provenance.learned_seconds,
         "terrain_changes": [{"run": run, "t": t} for run, t in alarms],

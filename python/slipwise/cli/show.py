@@ -24,7 +24,13 @@ def show(model: ModelFile, input_name: ModelInput = None, json: Json = None) -> 
     """  # noqa: D301
     from slipwise.cli.other_input import show_other_input
     from slipwise.cli.output import Output
-    from slipwise.cli.tables import show_parameters, show_summary, show_surfaces, show_verdict
+    from slipwise.cli.tables import (
+        show_parameters,
+        show_shares,
+        show_summary,
+        show_surfaces,
+        show_verdict,
+    )
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.models import load_model
     from slipwise.models.summary import summarise
@@ -41,6 +47,7 @@ def show(model: ModelFile, input_name: ModelInput = None, json: Json = None) -> 
     for line in _origin(learned):
         out.line(line)
     show_other_input(out, learned, model)
+    show_shares(out, learned)
     show_parameters(out, summary.parameters)
     if content.surfaces:
         show_surfaces(out, content.surfaces)
@@ -70,7 +77,7 @@ def _origin(model: Model) -> tuple[str, ...]:
 def _document(model: Model, summary: Summary) -> dict[str, Any]:
     from dataclasses import asdict
 
-    from slipwise.cli.document import head, surfaces_part
+    from slipwise.cli.document import head, shares_part, surfaces_part
     from slipwise.cli.other_input import other_input_part
 
     content = model.content
@@ -82,6 +89,7 @@ def _document(model: Model, summary: Summary) -> dict[str, Any]:
         "parameters": [asdict(parameter) for parameter in summary.parameters],
         "verdict": content.verdict.model_dump(),
         "range": content.range.model_dump(),
+        "shares": shares_part(model),
         "provenance": content.provenance.model_dump(),
         "surfaces": surfaces_part(model),
         **other_input_part(model),

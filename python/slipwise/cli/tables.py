@@ -12,7 +12,8 @@ from slipwise.calibration.next_step import verdict_label
 from slipwise.cli.output import Column, Output
 from slipwise.cli.run_folder import killed_runs
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, NEGLIGIBLE
-from slipwise.number_text import count_text, estimate_texts, number_text
+from slipwise.models.share_words import AXES, axis_shares, percent
+from slipwise.number_text import DASH, count_text, estimate_texts, number_text
 
 if TYPE_CHECKING:
     from slipwise.calibration import History, Verdict
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from slipwise.evaluation import Evaluation, Score
     from slipwise.evaluation.result import ErrorSummary
     from slipwise.logs import LeftOut
+    from slipwise.models.model import Model
     from slipwise.models.parameter_table import PhysicalParameter
     from slipwise.models.schema import SurfaceSection, VerdictSection
     from slipwise.models.summary import Summary
@@ -99,6 +101,18 @@ def show_parameters(output: Output, parameters: Sequence[PhysicalParameter]) -> 
         f"most {NEGLIGIBLE:.0%} of the motion in the log, {NEGLIGIBLE:g} s, m or rad."
     )
     output.table("Parameters", columns, rows, caption=caption)
+
+
+def show_shares(output: Output, model: Model) -> None:
+    """Show what arrives of commands, at the wheels and at the body; nothing where the log does not say it."""
+    rows = [
+        (AXES[axis][0], *(DASH if each is None else percent(each) for each in (s.arrives, s.wheels, s.floor)))
+        for axis, s in axis_shares(model).items()
+    ]
+    if rows:
+        columns = ("at the body", "at the wheels", "of that on the floor")
+        heads = (Column("commanded", whole=True), *(Column(name, True, whole=True) for name in columns))
+        output.table("What arrives of commands over the log", heads, rows)
 
 
 def show_confounded(output: Output, pairs: Sequence[Confounded]) -> None:

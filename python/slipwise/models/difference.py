@@ -12,6 +12,8 @@ from slipwise.errors import ModelError
 from slipwise.models.car import curve_gains
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, physical_parameters
+from slipwise.models.schema import AxisShares
+from slipwise.models.share_words import AXES, axis_shares
 from slipwise.models.slip_words import Gain, slip_gains
 
 #: Standard deviations of a difference from which on two models differ.
@@ -70,7 +72,7 @@ def differences(first: Model, second: Model) -> tuple[Difference, ...]:
             advice="learn both with the wheelbase, or neither",
         )
     rows = [_paired(*gains) for gains in zip(_gains(first), _gains(second), strict=True)]
-    rows += _curve_rows(first, second)
+    rows += [*_share_rows(first, second), *_curve_rows(first, second)]
     tables = [{p.name: p for p in _comparable(model, first, second)} for model in (first, second)]
     for name in dict.fromkeys((*tables[0], *tables[1])):
         one, other = (table.get(name) for table in tables)
@@ -100,6 +102,20 @@ def _gains(model: Model) -> list[tuple[str, Gain]]:
     gains = slip_gains(model)
     rows = [("speed gain", gains.speed), ("yaw-rate gain", gains.yaw_rate)]
     return [*rows, ("separation multiplier", gains.separation)] if model.content.input == "wheel" else rows
+
+
+def _share_rows(first: Model, second: Model) -> list[Difference]:
+    """What arrives of commands over the log of each."""
+    ours, theirs = axis_shares(first), axis_shares(second)
+    return [
+        Difference(f"share of {AXES[axis][0]}", "-", _share(ours.get(axis)), _share(theirs.get(axis)))
+        for axis in AXES
+        if axis in ours or axis in theirs
+    ]
+
+
+def _share(said: AxisShares | None) -> tuple[float, float] | None:
+    return None if said is None else (said.arrives.value, said.arrives.std)
 
 
 def _curve_rows(first: Model, second: Model) -> list[Difference]:

@@ -24,7 +24,7 @@ def _written(content: dict[str, Any]) -> dict[str, Any]:
     """Remove what is empty."""
     if not content["verdict"]["force"]:
         del content["verdict"]["force"]
-    for key in (*_MAY_BE_EMPTY, "other_input"):
+    for key in (*_MAY_BE_EMPTY, "shares", "other_input"):
         if not content[key]:
             del content[key]
     content["range"] = {key: value for key, value in content["range"].items() if value is not None}
@@ -37,6 +37,12 @@ def _written(content: dict[str, Any]) -> dict[str, Any]:
             del surface["classes"]
     if content["provenance"]["prior"] is None:
         del content["provenance"]["prior"]
+    if "shares" in content:
+        content["shares"] = {
+            axis: {key: value for key, value in said.items() if value is not None}
+            for axis, said in content["shares"].items()
+            if said is not None
+        }
     if "other_input" in content:
         content["other_input"] = _written(content["other_input"])
     return content

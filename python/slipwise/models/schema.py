@@ -146,6 +146,32 @@ class LogReference(Section):
     sha256: str
 
 
+class Share(Section):
+    """What arrives of something, as a fraction."""
+
+    value: Finite
+    std: NotNegative  # a tenth of the log left out in turn, and how the fit is made
+
+
+class AxisShares(Section):
+    """What arrives of a commanded speed or yaw rate, as the windows of the log say without a model."""
+
+    windows: Annotated[int, Field(ge=0)]
+    arrives: Share  # at the body, of what is commanded
+    wheels: Share | None = None  # at the wheels, of what is commanded
+    floor: Share | None = None  # at the body, of what the wheels do
+    below: NotNegative | None = None  # commands of this size arrive otherwise than larger ones [m/s or rad/s]
+    small: Share | None = None  # of these
+    large: Share | None = None  # of larger ones
+
+
+class Shares(Section):
+    """What arrives of commands, by axis."""
+
+    speed: AxisShares | None = None
+    yaw_rate: AxisShares | None = None
+
+
 class Provenance(Section):
     """Where the model comes from."""
 
@@ -293,6 +319,7 @@ class ModelFile(Section):
     labels: LabelSection | None = None  # of surfaces, where there are some
     branches: dict[str, NotNegative] = {}  # weights of the branches of the slip
     message: dict[str, str] = {}  # fields of a message that inputs are read from, by axis
+    shares: Shares | None = None  # that arrive of what is commanded; None: no commands, or too few windows
     other_input: ModelFile | None = None  # the same robot from its other input, learned from the same logs
 
     @model_validator(mode="after")

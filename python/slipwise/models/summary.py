@@ -11,6 +11,7 @@ from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, physical_parameters
 from slipwise.models.schema import HeldOut
 from slipwise.models.sensor_look import sensor_sentences
+from slipwise.models.share_words import share_sentences
 from slipwise.models.slip_words import slip_sentences
 from slipwise.number_text import estimate_text, number_text
 
@@ -46,6 +47,7 @@ def summarise(model: Model) -> Summary:
         return Summary((_NO_SLIP,), parameters)
     sentences = [
         *slip_sentences(model, parameters),
+        *share_sentences(model),
         *response_sentences(model, parameters),
         *_limit_sentences(parameters),
         *_offset_sentences(parameters, model.content.range.wheel_step),

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How much of what is commanded arrives at the wheels and at the body, as windows of the log say it.
+
+No model is asked: the mean rates of windows of about 1.5 s are fitted by those of the commands in the same
+window, the two before it and the two after it. The sum of the coefficients is what arrives in the end,
+whatever lag, delay and offset of clocks there are. Its standard deviation is the scatter where a tenth of the
+windows is left out in turn, and the difference that the oldest window makes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.models.schema import AxisShares, Share, Shares
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+
+_TAPS = (-2, -1, 0, 1, 2)  # windows whose inputs act in a window: means are of either side, and stamps late
+_FEWEST = 20  # windows that say something
+_BLOCKS = 10  # that are left out in turn
+_KNOWN_PART = 0.9  # of a window's time, an input must be known
+_SAME = 1e-3  # s between the end of a window and the start of the next
+_DRIVEN = 0.05  # of the largest command, below which a window says nothing of small ones
+_CLEAR, _LARGE = 3.0, 0.1  # standard deviations, and part of the share, by which small commands differ
+_RUN, _START, _DURATION, _DISTANCE, _COURSE, _TURN, _START_YAW = 0, 1, 3, 4, 5, 6, 8
+_COMMANDS, _WHEELS = 9, 13  # columns of forward, sideways, rotation, known
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """Rates that come out of inputs, in M windows."""
+
+    inputs: Floats  # [M, taps] in the window and its neighbours
+    outputs: Floats  # [M]
+
+    def __len__(self) -> int:
+        return len(self.outputs)
+
+    def without(self, block: Ints) -> _Fit:
+        kept = np.delete(np.arange(len(self)), block)
+        return _Fit(self.inputs[kept], self.outputs[kept])
+
+    def coefficients(self) -> Floats:
+        return np.asarray(np.linalg.lstsq(self.inputs, self.outputs, rcond=None)[0], dtype=np.float64)
+
+    def scatter(self, number: Callable[[_Fit], float]) -> float:
+        """Return the standard deviation of a number, by leaving a tenth of the windows out in turn."""
+        left = [number(self.without(block)) for block in np.array_split(np.arange(len(self)), _BLOCKS)]
+        return float(np.sqrt((_BLOCKS - 1) * np.var(left)))
+
+
+def shares_of(rows: Floats, *, sensor_y: float = 0.0, sensor_yaw: float = 0.0) -> Shares | None:
+    """Return the shares that arrive; None where too few windows say it.
+
+    Args:
+        rows: windows, as `_core.MotionEvidence` has them.
+        sensor_y: how far to the left the pose sensor is known to sit [m].
+        sensor_yaw: how it is known to be turned [rad].
+    """
+    if len(rows) < _FEWEST:
+        return None
+    half = 0.5 * rows[:, _TURN]
+    heading = rows[:, _COURSE] - (rows[:, _START_YAW] - sensor_yaw) - half
+    arc = rows[:, _DISTANCE] / np.sinc(half / np.pi)
+    ahead = arc * np.cos(heading) + sensor_y * rows[:, _TURN]
+    speed, yaw_rate = _axis(rows, ahead, 0), _axis(rows, rows[:, _TURN], 2)
+    return Shares(speed=speed, yaw_rate=yaw_rate) if speed or yaw_rate else None
+
+
+def _axis(rows: Floats, body: Floats, column: int) -> AxisShares | None:
+    duration = rows[:, _DURATION]
+    commands, wheels, moved = rows[:, _COMMANDS + column], rows[:, _WHEELS + column], body
+    commands, wheels, moved = commands / duration, wheels / duration, moved / duration
+    commanded, rolled = _places(rows, _COMMANDS), _places(rows, _WHEELS)
+    to_body = _fit(commands, moved, commanded)
+    arrives = _share(to_body)
+    if arrives is None:
+        return None
+    small = _small_commands(to_body)
+    return AxisShares(
+        windows=len(to_body),
+        arrives=arrives,
+        wheels=_share(_fit(commands, wheels, np.intersect1d(commanded, rolled))),
+        floor=_share(_fit(wheels, moved, rolled)),
+        below=small[0] if small else None,
+        small=small[1] if small else None,
+        large=small[2] if small else None,
+    )
+
+
+def _places(rows: Floats, first: int) -> Ints:
+    """Return the windows that have neighbours, in all of which the input is known."""
+    known = rows[:, first + 3] > _KNOWN_PART * rows[:, _DURATION]
+    ends = rows[:, _START] + rows[:, _DURATION]
+    follows = np.zeros(len(rows), dtype=np.bool_)
+    follows[1:] = (rows[1:, _RUN] == rows[:-1, _RUN]) & (np.abs(rows[1:, _START] - ends[:-1]) < _SAME)
+    places = np.arange(-_TAPS[0], len(rows) - _TAPS[-1])
+    good = [known[places + tap] for tap in _TAPS] + [follows[places + tap] for tap in _TAPS[1:]]
+    found: Ints = places[np.logical_and.reduce(good)]
+    return found
+
+
+def _fit(inputs: Floats, outputs: Floats, places: Ints) -> _Fit:
+    return _Fit(np.column_stack([inputs[places + tap] for tap in _TAPS]), outputs[places])
+
+
+def _share(fit: _Fit) -> Share | None:
+    if len(fit) < _FEWEST or not fit.inputs.any():
+        return None
+    value = _gain(fit)
+    fewer = value - _gain(_Fit(fit.inputs[:, 1:], fit.outputs))  # what the oldest commands make of it
+    return Share(value=value, std=float(np.hypot(fit.scatter(_gain), fewer)))
+
+
+def _gain(fit: _Fit) -> float:
+    return float(fit.coefficients().sum())
+
+
+def _small_commands(fit: _Fit) -> tuple[float, Share, Share] | None:
+    """Return a size of commands, and the shares of those below and above it, where they clearly differ."""
+    whole = fit.coefficients()
+    if not abs(whole.sum()) > 0.0:
+        return None
+    acting = np.abs(fit.inputs @ (whole / whole.sum()))  # what of the commands is there by now
+    driven = acting > _DRIVEN * acting.max()
+    if driven.sum() < 2 * _FEWEST:
+        return None
+    size = float(np.median(acting[driven]))
+
+    def part(fit: _Fit, *, large: bool) -> float:
+        now = fit.inputs @ (whole / whole.sum())
+        chosen = (np.abs(now) > size) == large
+        return float(now[chosen] @ fit.outputs[chosen] / (now[chosen] @ now[chosen]))
+
+    small, large = part(fit, large=False), part(fit, large=True)
+    apart = fit.scatter(lambda some: part(some, large=False) - part(some, large=True))
+    if abs(small - large) < max(_CLEAR * apart, _LARGE * abs(large)):
+        return None
+    stds = [fit.scatter(partial(part, large=which)) for which in (False, True)]
+    return size, Share(value=small, std=stds[0]), Share(value=large, std=stds[1])

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What arrives of commands, in words."""
+
+from __future__ import annotations
+
+from slipwise.models.model import Model
+from slipwise.models.schema import AxisShares, Share
+from slipwise.number_text import estimate_text, number_text
+
+AXES = {"speed": ("speed", "m/s"), "yaw_rate": ("yaw rate", "rad/s")}
+_KNOWN = 0.15  # standard deviation up to which a share is said
+
+
+def axis_shares(model: Model) -> dict[str, AxisShares]:
+    """Return the shares by axis, "speed" and "yaw_rate", of those that the log says."""
+    shares = model.content.shares
+    found = {} if shares is None else {axis: getattr(shares, axis) for axis in AXES}
+    return {axis: said for axis, said in found.items() if said is not None}
+
+
+def share_sentences(model: Model) -> list[str]:
+    """Say what arrives of commands over the log, and where it is not in proportion."""
+    found = {axis: said for axis, said in axis_shares(model).items() if _known(said.arrives)}
+    parts = [_of_axis(said, AXES[axis][0]) for axis, said in found.items()]
+    sentences = [f"Over this log, {' and '.join(parts)} arrive."] if parts else []
+    for axis, said in found.items():
+        if said.below is None or said.small is None or said.large is None:
+            continue
+        name, unit = AXES[axis]
+        sentences.append(
+            f"That is no one number: of {name}s commanded below {number_text(said.below, 2)} {unit} "
+            f"{percent(said.small)} arrives, of larger ones {percent(said.large)}."
+        )
+    return sentences
+
+
+def percent(share: Share) -> str:
+    """Return a share in percent."""
+    return f"{estimate_text(100.0 * share.value, 100.0 * share.std)} %"
+
+
+def _of_axis(said: AxisShares, name: str) -> str:
+    text = f"{percent(said.arrives)} of the commanded {name}"
+    if said.wheels is None or said.floor is None or not (_known(said.wheels) and _known(said.floor)):
+        return text
+    return f"{text} (the wheels {percent(said.wheels)}, of that on the floor {percent(said.floor)})"
+
+
+def _known(share: Share) -> bool:
+    return share.std <= _KNOWN

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What arrives of commands is found whatever lag, delay and slip there are, with a spread that holds it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sample_logs import Drive, simulated_log
+
+import slipwise as sw
+from slipwise import _core
+from slipwise.calibration import calibrate
+from slipwise.calibration.shares import shares_of
+from slipwise.logs import Log
+from slipwise.logs.motion_windows import evidence_of
+from slipwise.models.difference import differences
+from slipwise.models.schema import AxisShares
+from slipwise.models.share_words import share_sentences
+
+SLIP = (-0.1, -0.6)  # of speed and yaw rate: 90 and 40 % arrive
+DRIVE = Drive(seconds=120.0, lag=0.4, delay=0.2, basis=_core.named_basis("edd-2"), alpha=SLIP)
+
+
+def of_axes(log: Log) -> list[AxisShares]:
+    shares = shares_of(evidence_of(log.runs, 0.5).windows)
+    assert shares is not None
+    assert shares.speed is not None
+    assert shares.yaw_rate is not None
+    return [shares.speed, shares.yaw_rate]
+
+
+def test_shares_hold_the_truth_of_many_drives() -> None:
+    """Of 90 % intervals, at least as many hold it; and none is so wide that it says nothing."""
+    held, widest = [], 0.0
+    for seed, lag in [(seed, lag) for seed in range(15) for lag in (0.0, 0.3, 0.8)]:
+        axes = of_axes(simulated_log(replace(DRIVE, seed=seed, lag=lag, delay=lag / 2.0)))
+        for axis, slip in zip(axes, SLIP, strict=True):
+            assert axis.wheels is not None
+            assert axis.floor is not None
+            pairs = ((axis.arrives, 1.0 + slip), (axis.wheels, 1.0), (axis.floor, 1.0 + slip))
+            held += [abs(share.value - truth) < 1.645 * share.std + 0.002 for share, truth in pairs]
+            widest = max(widest, *(share.std for share, _ in pairs))
+            assert axis.below is None, f"seed {seed}, lag {lag}: this robot is in proportion"
+    assert np.mean(held) >= 0.9
+    assert widest < 0.15
+
+
+def test_a_dead_band_is_no_one_share() -> None:
+    run = simulated_log(DRIVE).runs[0]
+    assert run.commands is not None
+    asked = replace(run.commands, omega=run.commands.omega + 0.25 * np.sign(run.commands.omega))
+    _, yaw_rate = of_axes(Log(runs=(replace(run, commands=asked),)))
+    assert yaw_rate.below is not None
+    assert yaw_rate.small is not None
+    assert yaw_rate.large is not None
+    assert yaw_rate.small.value + 3.0 * yaw_rate.small.std < yaw_rate.large.value
+
+
+def test_a_model_says_it_and_keeps_it_and_models_are_compared_by_it() -> None:
+    model = calibrate(simulated_log(DRIVE), input="command").model
+    other = calibrate(simulated_log(replace(DRIVE, alpha=(-0.1, -0.3))), input="command").model
+    assert model.content.shares == sw.models.parse_model(model.to_yaml(), where="text").content.shares
+    (sentence,) = share_sentences(model)
+    assert sentence.startswith("Over this log, 90")
+    assert "of that on the floor" in sentence
+    rows = {row.name: row for row in differences(model, other)}
+    assert not rows["share of speed"].different
+    assert rows["share of yaw rate"].different
+    assert calibrate(simulated_log(DRIVE), input="wheel").model.content.shares is None
+
+
+def test_few_windows_say_nothing() -> None:
+    assert shares_of(evidence_of(simulated_log(replace(DRIVE, seconds=20.0)).runs, 0.5).windows) is None
+
+
+def test_a_sensor_that_is_known_to_be_turned_and_off_centre_changes_nothing() -> None:
+    rows = evidence_of(simulated_log(DRIVE).runs, 0.5).windows
+    turned = rows.copy()
+    turned[:, 8] += 1.2  # what it measures as yaw
+    plain, known = shares_of(rows), shares_of(turned, sensor_yaw=1.2)
+    assert plain is not None
+    assert known is not None
+    assert plain.speed is not None
+    assert known.speed is not None
+    assert known.speed.arrives.value == pytest.approx(plain.speed.arrives.value)
