@@ -17,6 +17,7 @@ from slipwise.logs.quality import checked
 
 Change = Callable[[Run], Run]
 HOLD, WATCHDOG = 1.3, 0.5  # s between commands, and until the robot stops
+OPERATOR = 20.0  # s for which somebody else drives
 RADIUS, SEPARATION = 0.1, 0.5  # m, of wheels for faults of one wheel
 
 
@@ -221,6 +222,23 @@ def watchdog(run: Run) -> Run:
     return Run(name=run.name, commands=sent, wheels=None, poses=poses_)
 
 
+def overridden(run: Run) -> Run:
+    """Say stand for 20 s in which the wheels drive farthest: an operator's stick is not recorded."""
+    c, w = run.commands, run.wheels
+    if c is None or w is None or len(c) < 2 or len(w) < 2:
+        return run
+    way = np.concatenate(([0.0], np.cumsum(np.abs(w.v[:-1]) * np.minimum(np.diff(w.t), 0.5))))
+    starts = np.arange(c.t[0], c.t[-1] - OPERATOR, 1.0)
+    driven = np.interp(starts + OPERATOR, w.t, way) - np.interp(starts, w.t, way)
+    begin = float(starts[np.argmax(driven)]) if len(starts) else np.inf
+    t = np.arange(begin, begin + OPERATOR, 0.1) if len(starts) else np.empty(0)
+    kept = (c.t < begin) | (c.t >= begin + OPERATOR)
+    at, none = np.concatenate((c.t[kept], t)), np.zeros(len(t))
+    order = np.argsort(at)
+    columns = {name: np.concatenate((getattr(c, name)[kept], none))[order] for name in ("v", "vy", "omega")}
+    return replace(run, commands=Inputs(t=at[order], **columns))
+
+
 @dataclass(frozen=True)
 class Fault:
     """What is done to a log, which inputs the log needs for it, and the kinds of finding that name it."""
@@ -279,6 +297,7 @@ FAULTS: dict[str, Fault] = {
     "unrelated inputs": Fault(unrelated, NOT_THESE, unseen=("DS3",)),
     "odometry echoes the command": Fault(echoing, ("echoed-commands",), ("commands", "wheels")),
     "dead band": Fault(banded, ("dead-band",), ("commands", "wheels"), unseen=("DS3",)),
+    "operator's override": Fault(overridden, ("overridden",), ("commands", "wheels")),
     "twist in the parent's frame": Fault(rotated_into_parent, ("parent-twist",), ("wheels",)),
     "two publishers": Fault(two_publishers, ("two-sources",), ("wheels",)),
     "poses in simulated time": of_poses(at_rate(0.8), "clock-drift"),

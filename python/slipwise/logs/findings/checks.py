@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from slipwise import _core
 from slipwise.logs.findings.clocks import CLOCKS
-from slipwise.logs.findings.command_answers import DeadBand, EchoedCommands
+from slipwise.logs.findings.command_answers import DeadBand, EchoedCommands, Overridden
 from slipwise.logs.findings.command_stops import CommandTimeout
 from slipwise.logs.findings.course_heading import CourseHeading
 from slipwise.logs.findings.encoders import WheelSpikes
@@ -65,13 +65,14 @@ WHOLE: tuple[Check, ...] = (
     WheelSpikes(),
     EchoedCommands(),
     DeadBand(),
+    Overridden(),
     FrozenPoses(),
     ClockOffset(),
     ClockDrift(),
     TwoSources(),
 )
 #: What a live node looks for in its last minutes; two sources it watches sample by sample.
-OF_STREAM: tuple[Check, ...] = (WheelSpikes(), EchoedCommands(), FrozenPoses(), ClockOffset())
+OF_STREAM: tuple[Check, ...] = (WheelSpikes(), EchoedCommands(), Overridden(), FrozenPoses(), ClockOffset())
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(
     {c.kind: c for c in (*FIRST, *THEN, *WHOLE, *CLOCKS, *TOPICS, *READINGS)}.values()

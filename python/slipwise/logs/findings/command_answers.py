@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds commands that are not what moves the robot: echoed as odometry, or in a dead band."""
+"""Finds commands that are not what moves the robot: echoed as odometry, in a dead band, or overridden."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.log import Floats, Inputs
+from slipwise.logs.held import HeldSum
+from slipwise.logs.log import Floats, Inputs, Run
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import WholeLog
@@ -23,6 +24,11 @@ _SETTLED, _HELD = 0.8, 0.7  # s until the wheels have answered, and for how long
 _STILL = 0.05  # of the command
 _SMALL = 4  # commands without an answer,
 _FEW = 0.05  # and part of the larger ones that have none either
+_NONE = 1e-3  # m/s or rad/s, a command to stand
+_STOPPED = 1.5  # s after which a robot that was told to stand does
+_DRIVES = 0.1  # m/s of the wheels, turns by an arm of
+_ARM = 0.3  # m
+_OVERRIDDEN = 5.0  # s of driving against one command to stand
 
 
 class EchoedCommands(Check):
@@ -118,3 +124,46 @@ def _held_answers(commands: Inputs | None, wheels: Inputs | None, column: str) -
             if len(own) > 2:
                 found.append((abs(asked), float(np.median(own)) * np.sign(asked)))
     return np.array(found).T if found else np.empty((2, 0))
+
+
+class Overridden(Check):
+    """Wheels that drive while the commands say stand."""
+
+    kind, family, spoils = "overridden", "drive", False
+    means = "somebody else drives: an operator's override, or the other inputs of a multiplexer (twist_mux)"
+    shows = "for 5 s and more the wheels drive, 1.5 s after a command to stand that is repeated all the time"
+    cure = "record what the multiplexer gives out; `[live] override_topic`; `--input wheel`"
+
+    def look_at(self, whole: WholeLog) -> Finding | None:
+        """Look what the wheels do while the command is zero."""
+        if whole.input_name != "command":
+            return None
+        stretches = [each for run in whole.log.runs for each in _driven_at_rest(run, whole.unknown_after)]
+        found = [each for each in stretches if each[0] > _OVERRIDDEN]
+        if not found:
+            return None
+        longest, place = max(found)
+        total = sum(seconds for seconds, _ in found)
+        return self.found(
+            f"the wheels drive for {total:.0f} s in which the commands say stand, for {longest:.0f} s from "
+            f"{place}: somebody else drives (an operator, another input of a multiplexer)",
+            "Record what the multiplexer gives out, not one of its inputs; name the operator's topic as [live] "
+            "override_topic; or learn from the wheels (--input wheel).",
+            evidence=total,
+        )
+
+
+def _driven_at_rest(run: Run, unknown_after: float) -> list[tuple[float, str]]:
+    """Return for how long [s] the wheels drove against each command to stand, and from where on."""
+    c, w = run.commands, run.wheels
+    if c is None or w is None or not len(c) or not len(w):
+        return []
+    still = np.abs(np.column_stack((c.v, c.vy, c.omega))).max(axis=1) < _NONE
+    same = still[1:] & still[:-1] & (np.diff(c.t) <= unknown_after)
+    first = np.flatnonzero(still & np.concatenate(([True], ~same)))
+    last = np.flatnonzero(still & np.concatenate((~same, [True])))
+    ends = np.minimum(np.append(c.t[1:], np.inf)[last], c.t[last] + unknown_after)
+    begins = np.minimum(c.t[first] + _STOPPED, ends)
+    drives = np.hypot(w.v, w.vy) + _ARM * np.abs(w.omega) > _DRIVES
+    seconds = HeldSum.of(w, drives.astype(float), unknown_after).between(begins, ends)
+    return [(s, run.place(t)) for s, t in zip(seconds.tolist(), begins.tolist(), strict=True)]
