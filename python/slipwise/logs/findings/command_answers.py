@@ -147,8 +147,8 @@ class Overridden(Check):
         return self.found(
             f"the wheels drive for {total:.0f} s in which the commands say stand, for {longest:.0f} s from "
             f"{place}: somebody else drives (an operator, another input of a multiplexer)",
-            "Record what the multiplexer gives out, not one of its inputs; name the operator's topic as [live] "
-            "override_topic; or learn from the wheels (--input wheel).",
+            "Record what the multiplexer gives out, not one of its inputs; name the operator's topic as "
+            "[live] override_topic; or learn from the wheels (--input wheel).",
             evidence=total,
         )
 
