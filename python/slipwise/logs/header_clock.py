@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from slipwise.logs.findings.clocks import ClockApart, ClockOfTopic, ClockRate, NoClock
+from slipwise.logs.findings.clocks import ClockApart, ClockOfTopic, ClockRate, ClockSlewed, NoClock
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.log import Floats
 
@@ -23,6 +23,7 @@ _DRIFT = 0.05  # s over the recording from which on a rate of its own is seen,
 _CERTAIN = 4.0  # times the scatter of the delays
 _SLOWEST, _FASTEST = 0.01, 100.0  # rates of simulations
 _UNSTEADY = 0.1  # of the recording; stamps that scatter by more follow no clock
+_SLEWED = 0.1  # s by which clocks of one rate move against each other over a recording: more than delays do
 _LEAST_DELAYED = 0.95  # quantile; a few stamps may be wrong
 _PIECES = 60  # of a recording, in which the least delayed message is looked for
 SIMULATED = 0.005  # a rate so far from 1 is no drift of an oscillator: time is simulated
@@ -46,6 +47,11 @@ class HeaderClock:
     def offset(self) -> float:
         """By how much headers are ahead of receipt in the middle of the recording [s]."""
         return float(np.median(self.lead))
+
+    @property
+    def moves(self) -> float:
+        """By how much it moves against that of receipt over the recording [s]."""
+        return (self.rate - 1.0) * float(self.knots[-1] - self.knots[0])
 
     @property
     def simulated(self) -> bool:
@@ -107,6 +113,7 @@ class BagClocks:
     main: HeaderClock | None  # of the poses, or of whatever has headers; None: the recorder's
     shifts: Mapping[str, float]  # s added to the stamps of topics on another clock
     received: frozenset[str] = frozenset()  # topics whose stamps follow no clock, or one of another rate
+    slewed: Mapping[str, float] = field(default_factory=dict)  # s that topics move against the poses' clock
     compared: bool = False  # whether headers and receipt tell anything of each other
 
     def by_receipt(self, received: Floats) -> Floats:
@@ -133,6 +140,7 @@ class BagClocks:
             how = "has no header: its commands get the time of receipt"
             said = [f"{name} {how}" for name in unstamped]
         said += [ClockOfTopic.by(topic, seconds) for topic, seconds in self.shifts.items()]
+        said += [ClockSlewed.by(topic, seconds) for topic, seconds in self.slewed.items()]
         said += [NoClock.of(topic) for topic in sorted(self.received)]
         return tuple(said)
 
@@ -157,6 +165,8 @@ def clocks_of(
     alike = {name: each for name, each in known.items() if abs(each.rate - main.rate) <= SIMULATED}
     lost = frozenset(found) - frozenset(alike)
     shifts = {name: _between(main, each) for name, each in alike.items()}
+    moves = {name: each.moves - main.moves for name, each in alike.items()}
+    slewed = {name: by for name, by in moves.items() if abs(by) > _SLEWED and not main.simulated}
     clock_offset = compare_clocks(*clock) if clock is not None and main.simulated else None
     if clock_offset is not None and abs(clock_offset.rate - main.rate) <= SIMULATED:
         main = clock_offset
@@ -164,7 +174,8 @@ def clocks_of(
         leads = [each.offset for name, each in alike.items() if not shifts[name]]
         main = main.moved(max(leads) - main.offset)
     copied = all(np.abs(r - s).max() < _COPIED for r, s in streams.values() if len(r))
-    return BagClocks(main, {name: shift for name, shift in shifts.items() if shift}, lost, not copied)
+    shifted = {name: shift for name, shift in shifts.items() if shift}
+    return BagClocks(main, shifted, lost, slewed, not copied)
 
 
 def _between(main: HeaderClock, other: HeaderClock) -> float:

@@ -79,6 +79,25 @@ class ClockOfTopic(Check):
         )
 
 
+class ClockSlewed(Check):
+    """One topic whose clock moves against that of the poses."""
+
+    kind, family, spoils = "clock-slewed", "clocks", False
+    means = "a computer's clock is pulled to another's (NTP, chrony) while it records, or drifts"
+    shows = "over the recording the stamps of a topic move by 0.1 s and more against those of the poses"
+    cure = "let the clocks settle before recording (`chronyc waitsync`); `--start` leaves the beginning out"
+
+    @classmethod
+    def by(cls, topic: str, seconds: float) -> Finding:
+        """Say by how much its stamps move over the recording [s]."""
+        return cls.found(
+            f"the stamps of {topic} move by {seconds:+.2f} s against those of the poses over the recording: "
+            "a clock is pulled to another (NTP), or drifts",
+            "Let the clocks settle before recording (chronyc waitsync); one clock offset cannot mend it.",
+            evidence=seconds,
+        )
+
+
 class NoClock(Check):
     """Stamps that follow no clock."""
 
@@ -120,6 +139,7 @@ CLOCKS: tuple[Check, ...] = (
     ClockApart(),
     ClockRate(),
     ClockOfTopic(),
+    ClockSlewed(),
     NoClock(),
     PostdatedPoses(),
 )

@@ -60,6 +60,12 @@ def wheels_apart(bag: Bag, drive: FieldDrive) -> None:
     write_wheels(bag, drive, stamped=clock(-4.0))
 
 
+def slewed(bag: Bag, drive: FieldDrive) -> None:
+    write_commands(bag, drive)
+    write_poses(bag, drive)
+    write_wheels(bag, drive, stamped=clock(rate=1.003))
+
+
 def set_back(bag: Bag, drive: FieldDrive) -> None:
     def jumping(t: float) -> int:
         return recorder(t - (10.0 if t > 40.0 else 0.0))
@@ -116,6 +122,7 @@ FAULTS: dict[str, tuple[Callable[[Bag, FieldDrive], None], str]] = {
     "time at 0.8 of real time": (simulated, "clock-rate"),
     "headers 1.7 s ahead": (ahead, "clock-apart"),
     "wheels on another computer": (wheels_apart, "clock-of-topic"),
+    "a clock that is slewed": (slewed, "clock-slewed"),
     "clock set back": (set_back, "clock-set-back"),
     "random stamps": (random_stamps, "no-clock"),
     "no twist": (without_twist, "zero-twist"),
