@@ -22,6 +22,7 @@
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/actuator/input_history.hpp"
 #include "slipwise/actuator/kinematics.hpp"
+#include "slipwise/actuator/limit_kinds.hpp"
 #include "slipwise/actuator/measured_start.hpp"
 #include "slipwise/identify/car_curve_filter.hpp"
 #include "slipwise/identify/limit_search.hpp"
@@ -31,6 +32,34 @@ namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace slipwise::bindings {
+
+namespace {
+
+void bind_limit_kinds(nb::module_& m) {
+  nb::class_<AxisLimits> limits(m, "AxisLimits", "Dead-band, saturation and slew rates of one axis of the actuator.");
+  limits.def(
+      "__init__",
+      [](AxisLimits* self, double dead_band, double saturation, double slew_rate_up, double slew_rate_down) {
+        new (self) AxisLimits{dead_band, saturation, slew_rate_up, slew_rate_down};
+      },
+      "dead_band"_a = AxisLimits{}.dead_band, "saturation"_a = AxisLimits{}.saturation,
+      "slew_rate_up"_a = AxisLimits{}.slew_rate_up, "slew_rate_down"_a = AxisLimits{}.slew_rate_down);
+  nb::enum_<LimitKind> kinds(m, "LimitKind");
+  for (const LimitKind kind : kLimitKinds) {
+    const LimitRow& row = row_of(kind);
+    limits.def_ro(row.name, row.value);
+    kinds.value(row.name, kind);
+  }
+  nb::class_<LimitRow>(m, "LimitRow", "A kind of limit that an axis of the drive may have.")
+      .def_ro("name", &LimitRow::name)
+      .def_prop_ro(
+          "absent", [](const LimitRow& row) { return AxisLimits{}.*row.value; }, "What limits nothing.")
+      .def_ro("of_change", &LimitRow::of_change, "Its unit is that of the axis over seconds.")
+      .def_ro("words", &LimitRow::words, "Before the number in a sentence.");
+  m.def("limit_rows", [] { return std::vector(kLimits.begin(), kLimits.end()); }, "In the order of `LimitKind`.");
+}
+
+}  // namespace
 
 void bind_actuator(nb::module_& m) {
   using Array = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -78,18 +107,7 @@ void bind_actuator(nb::module_& m) {
       .def_ro("slow_fraction_omega", &ActuatorModel::slow_fraction_omega)
       .def_ro("slow_time_constant_v", &ActuatorModel::slow_time_constant_v)
       .def_ro("slow_time_constant_omega", &ActuatorModel::slow_time_constant_omega);
-  nb::class_<AxisLimits>(m, "AxisLimits", "Dead-band, saturation and slew rates of one axis of the actuator.")
-      .def(
-          "__init__",
-          [](AxisLimits* self, double dead_band, double saturation, double slew_rate_up, double slew_rate_down) {
-            new (self) AxisLimits{dead_band, saturation, slew_rate_up, slew_rate_down};
-          },
-          "dead_band"_a = AxisLimits{}.dead_band, "saturation"_a = AxisLimits{}.saturation,
-          "slew_rate_up"_a = AxisLimits{}.slew_rate_up, "slew_rate_down"_a = AxisLimits{}.slew_rate_down)
-      .def_ro("dead_band", &AxisLimits::dead_band)
-      .def_ro("saturation", &AxisLimits::saturation)
-      .def_ro("slew_rate_up", &AxisLimits::slew_rate_up)
-      .def_ro("slew_rate_down", &AxisLimits::slew_rate_down);
+  bind_limit_kinds(m);
   nb::class_<CommandLimits>(m, "CommandLimits",
                             "Limits of the commands, and then of the sides `wheel_separation` [m] apart.")
       .def(
@@ -276,11 +294,6 @@ void bind_limits(nb::module_& m) {
             new (self) WheelRecord(std::move(record));
           },
           "commands"_a, "wheels"_a, "`wheels` are rows of t [s], v [m/s], omega [rad/s].");
-  nb::enum_<LimitKind>(m, "LimitKind")
-      .value("DeadBand", LimitKind::DeadBand)
-      .value("Saturation", LimitKind::Saturation)
-      .value("SlewRateUp", LimitKind::SlewRateUp)
-      .value("SlewRateDown", LimitKind::SlewRateDown);
   nb::enum_<LimitedAxis>(m, "LimitedAxis", "The commanded speed, the commanded yaw rate, or both sides.")
       .value("Speed", LimitedAxis::Speed)
       .value("YawRate", LimitedAxis::YawRate)

@@ -208,8 +208,8 @@ void bind_online(nb::module_& m) {
       .value("Wheels", Stream::Wheels)
       .value("Pose", Stream::Pose)
       .value("Attitude", Stream::Attitude)
-      .value("Gyro", Stream::Gyro)
-      .value("Force", Stream::Force);
+      .value("Force", Stream::Force)
+      .value("Reading", Stream::Reading);
   bind_settings(m);
   bind_recordings(m);
   bind_evidence(m);
@@ -260,8 +260,10 @@ void bind_online(nb::module_& m) {
            }),
            "t"_a, "x"_a, "y"_a, "frame"_a, "std_xy"_a = 0.0, "learned"_a = true, "source"_a = 0, "fix"_a = 0,
            "A position without a heading, which is taken from the course of its path.")
-      .def("push_gyro", locked([](MotionLearner& learner, double t, double rate) { learner.push(YawRate{t, rate}); }),
-           "t"_a, "rate"_a)
+      .def("push_reading", locked([](MotionLearner& learner, double t, std::string_view column, double value) {
+             learner.push(Reading{.kind = reading_kind(column), .t = t, .value = value});
+           }),
+           "t"_a, "column"_a, "value"_a, "A number of a sensor of `READINGS`.")
       .def_prop_ro("gyro_bias", locked([](const MotionLearner& learner) {
                      const GyroBuffer& gyro = learner.stream().gyro();
                      return std::array{gyro.bias(), gyro.bias_std()};

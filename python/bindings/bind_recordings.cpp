@@ -2,6 +2,7 @@
 // Bindings of what goes into a learner and judges it: sources of poses, recorded runs, evidence of contradictions.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -33,7 +35,7 @@ namespace slipwise::bindings {
 namespace {
 
 Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
-                    const std::optional<Rows>& gyro, const std::optional<Rows>& forces) {
+                    const std::map<std::string, Rows>& measured, const std::optional<Rows>& forces) {
   check_columns(attitudes, 3, "attitudes");
   const bool with_source = poses.cols() == 9;
   const bool with_std = poses.cols() != 5;
@@ -57,12 +59,7 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
                          .fix = with_source ? pose_fix(static_cast<std::size_t>(row[8])) : PoseFix::Unknown,
                          .position = std::isnan(row[3])});
   }
-  if (gyro) {
-    check_columns(*gyro, 2, "gyro");
-    for (const auto& row : gyro->rowwise()) {
-      run.gyro.push_back({row[0], row[1]});
-    }
-  }
+  run.readings = readings(measured);
   if (forces) {
     run.forces = known_forces(*forces);
   }
@@ -98,6 +95,17 @@ void bind_attitudes(nb::module_& m) {
           "t"_a, "roll"_a, "pitch"_a,
           "Roll and pitch of the robot [rad]; None where no robot drives like that, or the mounting is not known.")
       .def_prop_ro("mounting", &AttitudeGate::mounting);
+}
+
+void bind_readings(nb::module_& m) {
+  nb::class_<ReadingKind>(m, "ReadingKind", "A kind of sensor that measures one number.")
+      .def_ro("column", &ReadingKind::column, "Of a tidy log.")
+      .def_ro("sensor", &ReadingKind::sensor, "In a word.")
+      .def_ro("unit", &ReadingKind::unit)
+      .def_ro("meaning", &ReadingKind::meaning);
+  m.def(
+      "reading_kinds", [] { return std::vector(kReadings.begin(), kReadings.end()); },
+      "Sensors that measure one number, in the order in which they count at one stamp.");
 }
 
 Rows window_rows(const std::deque<MotionWindow>& windows) {
@@ -212,19 +220,21 @@ void bind_sources(nb::module_& m) {
 void bind_recordings(nb::module_& m) {
   m.attr("SAME_STAMP") = kSameStamp;  // [s] stamps no further apart are the same
   bind_attitudes(m);
+  bind_readings(m);
   nb::class_<Recording>(m, "Recording", "One recorded run, each stream in the order of its stamps.")
       .def(
           "__init__",
           [](Recording* self, const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
-             const std::optional<Rows>& gyro, const std::optional<Rows>& forces) {
-            new (self) Recording(recording(commands, wheels, attitudes, poses, gyro, forces));
+             const std::map<std::string, Rows>& readings, const std::optional<Rows>& forces) {
+            new (self) Recording(recording(commands, wheels, attitudes, poses, readings, forces));
           },
-          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "gyro"_a = nb::none(), "forces"_a = nb::none(),
+          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "readings"_a = nb::dict(), "forces"_a = nb::none(),
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
           "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where "
           "unknown, or both left away; then the numbers of the source and of the fix may follow. A yaw of NaN says "
           "that "
-          "only the position was measured. Of a gyro rows of (t, yaw rate) [s, rad/s]; of known forces over the mass "
+          "only the position was measured. Of sensors of one number rows of (t, number) by the columns of "
+          "`reading_kinds`; of known forces over the mass "
           "rows of (t, x, y) [s, m/s^2, m/s^2], each of which holds until the next one.");
   nb::class_<Rejected>(m, "Rejected", "Something rejected.")
       .def_ro("stream", &Rejected::stream)

@@ -67,19 +67,6 @@ void add_to(ActuatorLoss& loss, const ActuatorLoss& of_channel) {
 
 double chi(double value, double std) { return (value / std) * (value / std); }
 
-double AxisLimits::* member_of(LimitKind kind) {
-  switch (kind) {
-    case LimitKind::DeadBand:
-      return &AxisLimits::dead_band;
-    case LimitKind::Saturation:
-      return &AxisLimits::saturation;
-    case LimitKind::SlewRateUp:
-      return &AxisLimits::slew_rate_up;
-    default:
-      return &AxisLimits::slew_rate_down;
-  }
-}
-
 AxisLimits CommandLimits::* member_of(LimitedAxis axis) {
   switch (axis) {
     case LimitedAxis::Speed:
@@ -93,9 +80,9 @@ AxisLimits CommandLimits::* member_of(LimitedAxis axis) {
 
 }  // namespace
 
-double& limit_of(AxisLimits& limits, LimitKind kind) { return limits.*member_of(kind); }
+double& limit_of(AxisLimits& limits, LimitKind kind) { return limits.*row_of(kind).value; }
 
-double limit_of(const AxisLimits& limits, LimitKind kind) { return limits.*member_of(kind); }
+double limit_of(const AxisLimits& limits, LimitKind kind) { return limits.*row_of(kind).value; }
 
 bool limits_anything(const AxisLimits& limits, LimitKind kind) {
   return limit_of(limits, kind) != limit_of(AxisLimits{}, kind);

@@ -5,23 +5,18 @@
 #include <cstddef>
 #include <stdexcept>
 
+#include "slipwise/actuator/limit_kinds.hpp"
+
 namespace slipwise {
 namespace {
 
 constexpr std::size_t kGains = 2;
 
 double& kind_of(AxisLimits& axis, const std::string& kind, const std::string& name) {
-  if (kind == "dead_band") {
-    return axis.dead_band;
-  }
-  if (kind == "saturation") {
-    return axis.saturation;
-  }
-  if (kind == "slew_rate_up") {
-    return axis.slew_rate_up;
-  }
-  if (kind == "slew_rate_down") {
-    return axis.slew_rate_down;
+  for (const LimitRow& row : kLimits) {
+    if (kind == row.name) {
+      return axis.*row.value;
+    }
   }
   throw std::invalid_argument("no drive has a limit " + name);
 }

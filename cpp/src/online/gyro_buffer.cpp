@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "slipwise/filter/linear_update.hpp"
 #include "slipwise/lie/angle.hpp"
@@ -111,6 +112,23 @@ std::optional<GyroTurn> GyroBuffer::turn(double start, double end) const {
   const double angle = *turned - bias_ * seconds;
   const double variance = squared(kWalk) * seconds + variance_ * seconds * seconds + squared(kScale * angle);
   return GyroTurn{.angle = angle, .std = std::sqrt(variance)};
+}
+
+Measured measured_turn(const GyroTurn& turn) {
+  return {.sensor = {.kind = YawRateSensor{.std = turn.std}}, .z = Rows::Constant(1, turn.angle)};
+}
+
+void GyroBuffer::measure(Segment& segment) const {
+  Measured& course = segment.measured.front();
+  auto* positions = std::get_if<PositionSensor>(&course.sensor.kind);
+  if (positions == nullptr) {
+    return;
+  }
+  if (const auto turned = turn(segment.start, segment.end)) {
+    positions->turn = false;
+    course.z.conservativeResize(2);
+    segment.measured.push_back(measured_turn(*turned));
+  }
 }
 
 void GyroBuffer::drop_before(double t) {

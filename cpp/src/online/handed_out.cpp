@@ -21,10 +21,6 @@ constexpr double kUnknownTurn = 3.0;   // [rad] of a turn that a gyro did not se
 constexpr double kActuatorBack = 5.0;  // [s] of commands before wheel speeds; their filter goes on from the last
 constexpr double kLargestForce = 1e3;  // [m/s^2] that a caller may expect
 
-Measured measured_turn(const GyroTurn& turn) {
-  return {.sensor = {.kind = YawRateSensor{.std = turn.std}}, .z = Rows::Constant(1, turn.angle)};
-}
-
 }  // namespace
 
 /// A pose as it is; a position with the heading that its course makes, where it has one.
@@ -39,24 +35,15 @@ std::optional<TimedPose> SegmentStream::headed(TimedPose timed, ChordFinder& cho
   return timed;
 }
 
-/// What a segment between positions is measured by: chords, and the turn of a gyro where there is one.
+/// What a segment between positions is measured by: chords.
 void SegmentStream::set_course(Segment& segment, const SegmentCut& cut) const {
   const auto& first = cut.first.headings[0];
   const auto& second = cut.second.headings[0];
   if (!first || !second) {
     return;
   }
-  Measured& course = segment.measured.front();
-  PositionSensor positions{.chords = {first->chord, second->chord},
-                           .std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
-  if (const auto turn = gyro_.turn(segment.start, segment.end)) {
-    positions.turn = false;
-    course.z.conservativeResize(2);
-    course.sensor.kind = positions;
-    segment.measured.push_back(measured_turn(*turn));
-  } else {
-    course.sensor.kind = positions;
-  }
+  segment.measured.front().sensor.kind =
+      PositionSensor{.chords = {first->chord, second->chord}, .std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
 }
 
 /// Headings are integrals of a gyro, one every `kHeadings`, and a frame ends where samples are missing.
@@ -75,7 +62,7 @@ void SegmentStream::turn_on(const YawRate& sample) {
 /// The turn alone, by a gyro whose bias is known as far as it is when the segment is complete.
 void SegmentStream::set_turn(Segment& segment) const {
   const GyroTurn turn =
-      gyro_.turn(segment.start, segment.end).value_or(GyroTurn{rows_of(segment.measured)[2], kUnknownTurn});
+      readings_.gyro().turn(segment.start, segment.end).value_or(GyroTurn{rows_of(segment.measured)[2], kUnknownTurn});
   segment.measured = {measured_turn(turn)};
 }
 

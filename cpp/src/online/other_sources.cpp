@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is pushed beside inputs and poses of the first source: attitudes, forces, yaw rates, and poses of other sources,
+// What is pushed beside inputs and poses of the first source: attitudes, forces, readings, and poses of other sources,
 // in the order of their stamps, gated, and cut into segments.
 #include <algorithm>
 #include <array>
@@ -148,14 +148,17 @@ bool SegmentStream::take(const KnownForce& force) {
   return true;
 }
 
-bool SegmentStream::take(const YawRate& rate) {
-  if (!arrives(Stream::Gyro, rate.t, std::array{rate.rate})) {
+bool SegmentStream::take(const Reading& reading) {
+  if (!arrives(Stream::Reading, reading.t, std::array{reading.value}, reading.kind)) {
     return false;
   }
-  gyro_.push(rate);
-  evidence_.push_gyro(rate);
-  if (settings_.heading_only) {
-    turn_on(rate);
+  readings_.push(reading);
+  if (Readings::of_gyro(reading)) {
+    const YawRate rate{reading.t, reading.value};
+    evidence_.push_gyro(rate);
+    if (settings_.heading_only) {
+      turn_on(rate);
+    }
   }
   return true;
 }

@@ -16,16 +16,24 @@ namespace {
 template <typename Receiver>
 void merge(const Recording& run, Receiver&& receiver) {
   constexpr double kEnd = std::numeric_limits<double>::infinity();
+  constexpr std::size_t kOthers = std::variant_size_v<Measurement> - 1;  // readings come last
   const auto next = [](const auto& samples, std::size_t i) { return i < samples.size() ? samples[i].t : kEnd; };
-  std::array<std::size_t, std::variant_size_v<Measurement>> at{};
-  const std::size_t count = run.commands.size() + run.wheels.size() + run.forces.size() + run.attitudes.size() +
-                            run.poses.size() + run.gyro.size();
+  std::array<std::size_t, kOthers + kReadingKinds> at{};
+  std::size_t count =
+      run.commands.size() + run.wheels.size() + run.forces.size() + run.attitudes.size() + run.poses.size();
+  for (const auto& readings : run.readings) {
+    count += readings.size();
+  }
   for (std::size_t i = 0; i < count; ++i) {
-    const std::array stamps{next(run.commands, at[0]),  next(run.wheels, at[1]), next(run.forces, at[2]),
-                            next(run.attitudes, at[3]), next(run.poses, at[4]),  next(run.gyro, at[5])};
-    const auto kind = static_cast<std::size_t>(std::ranges::min_element(stamps) - stamps.begin());
-    const std::size_t place = at[kind]++;
-    switch (kind) {
+    std::array<double, kOthers + kReadingKinds> stamps{next(run.commands, at[0]), next(run.wheels, at[1]),
+                                                       next(run.forces, at[2]), next(run.attitudes, at[3]),
+                                                       next(run.poses, at[4])};
+    for (std::size_t kind = 0; kind < kReadingKinds; ++kind) {
+      stamps.at(kOthers + kind) = next(run.readings.at(kind), at.at(kOthers + kind));
+    }
+    const auto stream = static_cast<std::size_t>(std::ranges::min_element(stamps) - stamps.begin());
+    const std::size_t place = at.at(stream)++;
+    switch (stream) {
       case 0:
         receiver(Measurement(CommandSample{run.commands[place]}));
         break;
@@ -42,7 +50,7 @@ void merge(const Recording& run, Receiver&& receiver) {
         receiver(Measurement(run.poses[place]));
         break;
       default:
-        receiver(Measurement(run.gyro[place]));
+        receiver(Measurement(run.readings.at(stream - kOthers)[place]));
     }
   }
 }

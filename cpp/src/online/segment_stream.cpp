@@ -79,7 +79,7 @@ void SegmentStream::start_run() {
   wheels_.clear();
   tilts_.clear();
   forces_.clear();
-  gyro_.restart();
+  readings_.restart();
   turned_until_.reset();
   gate_.restart();
   timer_.restart();
@@ -101,10 +101,10 @@ void SegmentStream::end_run() {
 }
 
 /// Whether a measurement may be used; says why not.
-bool SegmentStream::arrives(Stream stream, double t, std::span<const double> numbers) {
+bool SegmentStream::arrives(Stream stream, double t, std::span<const double> numbers, std::size_t kind) {
   evidence_.see_stamp(t);
   const bool too_late = std::isfinite(t) && later(newest_ - settings_.latency, t);
-  if (const auto wrong = stamps_[index(stream)].check(t, numbers)) {
+  if (const auto wrong = stamps_[index(stream) + kind].check(t, numbers)) {
     reject(stream, *wrong, t);
     return false;
   }
@@ -253,7 +253,7 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
       reject(Stream::Pose, Reason::LatePose, pose.t);
       continue;
     }
-    gyro_.see_inputs(pose.t, gate_inputs(pose.t), settings_.rules.still_speed);
+    readings_.gyro().see_inputs(pose.t, gate_inputs(pose.t), settings_.rules.still_speed);
     timed = headed(*std::move(timed), chords_);
     if (!timed) {
       reject(Stream::Pose, Reason::NoCourse, pose.t);
@@ -262,7 +262,7 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
     heading_ = timed->pose.yaw;
     rates_.push(timed->pose);
     if (pose.position) {
-      gyro_.see_course(timed->pose);
+      readings_.gyro().see_course(timed->pose);
     }
     if (car_) {
       car_->push_pose(timed->pose);
@@ -320,6 +320,7 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
   if (settings_.heading_only) {
     set_turn(segment);
   }
+  readings_.measure(segment);
   stand_on_ground(segment, horizon.has_value());
   if (!by_wheels) {
     set_actuator_state(segment);
@@ -370,7 +371,7 @@ void SegmentStream::trim() {
   wheels_.drop_before(oldest);
   tilts_.drop_before(oldest);
   forces_.drop_before(oldest);
-  gyro_.drop_before(oldest);
+  readings_.drop_before(oldest);
   if (car_) {
     car_->drop_before(oldest);
   }

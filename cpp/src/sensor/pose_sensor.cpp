@@ -43,11 +43,11 @@ Moments PoseSensor::moments(double start, double end) { return Eigen::Vector2d(s
 Seen PoseSensor::see(const View& view) {
   const Pose2 moved = between(view.robot[0], view.robot[1]);
   const Eigen::Matrix3d by_motion = sensor_by_robot(moved, view.place);
+  const Eigen::Matrix2d into_start = rotation(-view.robot[0].theta);
   Eigen::Matrix3d by_end = Eigen::Matrix3d::Identity();
-  by_end.topLeftCorner<2, 2>() = rotation(-view.robot[0].theta);
-  Eigen::Matrix3d by_start = -by_end;
-  by_start(0, 2) = moved.y;
-  by_start(1, 2) = -moved.x;
+  by_end.topLeftCorner<2, 2>() = into_start;
+  Eigen::Matrix3d by_start = end_by_start(moved);
+  by_start.topLeftCorner<2, 2>() = -into_start;
   return {.z = sensor_motion(moved, view.place).vector(),
           .by_pose = {by_motion * by_start, by_motion * by_end},
           .by_place = sensor_by_extrinsics(moved, view.place)};

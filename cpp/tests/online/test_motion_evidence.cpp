@@ -103,7 +103,7 @@ TEST_CASE("turns of a gyro are summed against those of the inputs, run by run") 
   for (std::size_t k = 0; k < 2; ++k) {
     for (int i = 0; i < 600; ++i) {
       runs[k].commands.push_back({0.05 * i, {0.5, 0.0, 0.4}});
-      runs[k].gyro.push_back({0.05 * i + 0.01, k == 0 ? 0.3 : -0.3});
+      runs[k].readings[0].push_back({.t = 0.05 * i + 0.01, .value = k == 0 ? 0.3 : -0.3});
     }
   }
   const MotionEvidence evidence = motion_evidence(settings, runs);

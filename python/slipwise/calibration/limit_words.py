@@ -6,12 +6,6 @@ from __future__ import annotations
 from slipwise import _core
 from slipwise.number_text import number_text
 
-_KINDS = {
-    _core.LimitKind.DeadBand: "dead band",
-    _core.LimitKind.Saturation: "saturation",
-    _core.LimitKind.SlewRateUp: "slew rate up",
-    _core.LimitKind.SlewRateDown: "slew rate down",
-}
 _AXES = {
     _core.LimitedAxis.Speed: "speed",
     _core.LimitedAxis.YawRate: "yaw rate",
@@ -41,12 +35,12 @@ def limits_advice(search: _core.LimitSearch) -> tuple[str, ...]:
     kinds, most = _core.LimitKind, _pair(speed.fastest, turn.fastest)
     steps = _pair(speed.step, turn.step)
     sentences = {
-        kinds.DeadBand: f"No dead band found; the smallest commands were {_pair(*slowest)}."
+        kinds.dead_band: f"No dead band found; the smallest commands were {_pair(*slowest)}."
         if any(slowest)
         else "",
-        kinds.Saturation: f"No saturation found; the largest commands were {most}.",
-        kinds.SlewRateUp: f"No acceleration limit found; the largest steps from rest were {steps}.",
-        kinds.SlewRateDown: f"No braking limit found; the largest steps to rest were {steps}.",
+        kinds.saturation: f"No saturation found; the largest commands were {most}.",
+        kinds.slew_rate_up: f"No acceleration limit found; the largest steps from rest were {steps}.",
+        kinds.slew_rate_down: f"No braking limit found; the largest steps to rest were {steps}.",
     }
     return tuple(sentence for kind, sentence in sentences.items() if sentence and kind not in found)
 
@@ -55,7 +49,7 @@ def doubted_limits(search: _core.LimitSearch, *, wheels_logged: bool) -> tuple[s
     """Return a sentence about limits that were found, yet not kept, as they predict no better."""
     if not search.found:
         return ()
-    names = ", ".join(f"{_AXES[each.axis]}: {_KINDS[each.kind]}" for each in search.found)
+    names = ", ".join(f"{_AXES[each.axis]}: {each.kind.name.replace('_', ' ')}" for each in search.found)
     remedy = "drive longer" if wheels_logged else "record wheel speeds"
     sentence = (
         f"The drive looks limited ({names}), but these limits do not improve predictions: the model leaves "

@@ -11,6 +11,8 @@ from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import SettingsError
 from slipwise.logs.attitude import mounting_words
 from slipwise.logs.fixes import fix_number
+from slipwise.logs.gyro import COLUMN as GYRO
+from slipwise.logs.readings import READINGS
 from slipwise.models.axes import SIDEWAYS, THROTTLE, TWIST, Axes
 
 
@@ -146,7 +148,23 @@ class Measurements:
 
     def push_gyro(self, t: float, rate: float) -> None:
         """Take a yaw rate [rad/s], counter-clockwise, at a stamp [s]: turns between positions are its own."""
-        self._core.push_gyro(t, rate)
+        self.push_reading(t, GYRO, rate)
+
+    def push_reading(self, t: float, column: str, value: float) -> None:
+        """Take what a sensor of one number measured at a stamp [s].
+
+        Args:
+            t: stamp [s].
+            column: of a tidy log that holds its numbers, such as gyro_z.
+            value: in the unit of that column.
+
+        Raises:
+            SettingsError: no such sensor is learned from.
+        """
+        if all(column != kind.column for kind in READINGS):
+            known = ", ".join(kind.column for kind in READINGS)
+            raise SettingsError(f"no sensor of one number has a column {column}", advice=f"known are {known}")
+        self._core.push_reading(t, column, value)
 
     def push_force(self, t: float, x: float, y: float) -> None:
         """Take a known force over the mass from a stamp [s] on: along the x axis and to the left [m/s^2].

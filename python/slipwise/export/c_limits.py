@@ -7,6 +7,7 @@ import math
 from importlib.resources import files
 
 from slipwise import _core
+from slipwise.models.limits import KINDS
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import physical_name, physical_parameters
 from slipwise.number_text import estimate_texts
@@ -58,5 +59,5 @@ def cursor(model: Model) -> str:
 
 
 def _axis(axis: _core.AxisLimits) -> str:
-    values = (axis.dead_band, axis.saturation, axis.slew_rate_up, axis.slew_rate_down)
+    values: list[float] = [getattr(axis, name) for name in KINDS]
     return ", ".join("INFINITY" if math.isinf(value) else repr(value) for value in values)

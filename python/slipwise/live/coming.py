@@ -8,7 +8,8 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
 from slipwise.calibration.coming import Coming
-from slipwise.live.samples import Command, Gyro, KnownForce, Pose, Sample, Wheels
+from slipwise.live.samples import Command, KnownForce, Pose, Reading, Sample, Wheels
+from slipwise.logs.gyro import COLUMN as GYRO
 from slipwise.logs.vocabulary import measured_by
 
 ENOUGH = 2.0  # s of samples, in which what is there shows itself
@@ -28,7 +29,7 @@ class ComingSoon:
     def __init__(self) -> None:
         self._first, self._last = math.inf, -math.inf
         self._poses: list[Pose] = []
-        self._others: set[type] = set()
+        self._others: set[type | str] = set()  # columns of readings
         self._sideways = False
 
     def take(self, samples: Iterable[Sample]) -> None:
@@ -38,8 +39,8 @@ class ComingSoon:
                 self._poses.append(sample)
             if isinstance(sample, Command | Wheels):
                 self._sideways = self._sideways or sample.vy != 0.0
-            if isinstance(sample, Command | Wheels | Pose | Gyro | KnownForce):
-                self._others.add(type(sample))
+            if isinstance(sample, Command | Wheels | Pose | Reading | KnownForce):
+                self._others.add(sample.column if isinstance(sample, Reading) else type(sample))
                 if math.isfinite(sample.t):
                     self._first, self._last = min(self._first, sample.t), max(self._last, sample.t)
 
@@ -57,7 +58,7 @@ class ComingSoon:
         tilted = any(pose.roll or pose.pitch for pose in self._poses)
         return ComingLines(
             positions=bool(self._poses) and not headed,
-            gyro_alone=Gyro in self._others and not self._poses and "x" not in columns,
+            gyro_alone=GYRO in self._others and not self._poses and "x" not in columns,
             sources=names if len(names) > 1 else (names or ("",) if fixes else ()),
             attitude=tilted or KnownForce in self._others,
             sideways=self._sideways or bool({"cmd_vy", "odo_vy"} & set(columns)),

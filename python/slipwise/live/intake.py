@@ -18,9 +18,9 @@ from slipwise.live.said import Said
 from slipwise.live.samples import (
     Command,
     DriveStart,
-    Gyro,
     KnownForce,
     Pose,
+    Reading,
     Stamped,
     SurfaceCue,
     Twist,
@@ -29,6 +29,7 @@ from slipwise.live.samples import (
 from slipwise.live.surface_watch import SurfaceWatch
 from slipwise.logs.findings.clocks import ClockSetBack
 from slipwise.logs.findings.finding import Finding
+from slipwise.logs.gyro import COLUMN as GYRO
 
 MOST_FRAMES = 1000  # whose names are kept
 
@@ -70,7 +71,7 @@ class Intake:
 
     def teaches(self, sample: Stamped) -> bool:
         """Whether a model is learned from samples of its kind, so that it is time to look at it."""
-        return isinstance(sample, Pose) or (isinstance(sample, Gyro) and self._learner.gyro_alone)
+        return isinstance(sample, Pose) or (self._learner.gyro_alone and _of_gyro(sample))
 
     def start_run(self, name: str) -> None:
         """Begin a recording: nothing is joined across runs."""
@@ -142,22 +143,22 @@ class Intake:
             learner.push_wheels(sample.t, sample.v, sample.omega, sample.vy)
         elif isinstance(sample, KnownForce):
             learner.push_force(sample.t, sample.x, sample.y)
-        elif isinstance(sample, Gyro):
-            self._push_gyro(sample)
+        elif isinstance(sample, Reading):
+            self._push_reading(sample)
         elif isinstance(sample, Pose):
             self._push_pose(sample if learner.tells_sources else self._of_one_source(sample))
 
-    def _push_gyro(self, sample: Gyro) -> None:
-        learner = self._learner
-        if learner.gyro_alone:
-            self._follow_gates(sample.t)
-        elif not learner.positions:
+    def _push_reading(self, sample: Reading) -> None:
+        learner, gyro = self._learner, _of_gyro(sample)
+        if gyro and not (learner.gyro_alone or learner.positions):
             self._said.count("turns of a gyro, which poses with a heading tell themselves")
             return
-        if learner.gyro_alone and self.why_not:
-            self._said.count(f"turns not learned from: {self.why_not}")
-        else:
-            learner.push_gyro(sample.t, sample.rate)
+        if gyro and learner.gyro_alone:
+            self._follow_gates(sample.t)
+            if self.why_not:
+                self._said.count(f"turns not learned from: {self.why_not}")
+                return
+        learner.push_reading(sample.t, sample.column, sample.value)
 
     def _of_one_source(self, pose: Pose) -> Pose:
         """The poses of the source that speaks first, where sources are not told apart."""
@@ -251,3 +252,7 @@ class Intake:
         elif self.why_not:
             self._said.ends(t, "gates", "learning resumed")
         self.why_not = why
+
+
+def _of_gyro(sample: Stamped) -> bool:
+    return isinstance(sample, Reading) and sample.column == GYRO

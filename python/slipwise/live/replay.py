@@ -15,9 +15,9 @@ from slipwise.live.feed import Feed
 from slipwise.live.samples import (
     Command,
     DriveStart,
-    Gyro,
     KnownForce,
     Pose,
+    Reading,
     RunStart,
     Sample,
     Stamped,
@@ -26,8 +26,7 @@ from slipwise.live.samples import (
 )
 from slipwise.logs import Log
 from slipwise.logs.fixes import FIXES
-from slipwise.logs.gyro import gyro_rows
-from slipwise.segments import force_rows, recording_rows, source_names, sourced_rows
+from slipwise.segments import force_rows, reading_rows, recording_rows, source_names, sourced_rows
 
 AS_FAST_AS_IT_GOES = 0.0
 
@@ -94,7 +93,7 @@ def with_labels(
 
 
 def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Stamped]:
-    """Yield the samples of a run in the order of their stamps: commands, wheels, forces, poses, the gyro.
+    """Yield the samples of a run in the order of their stamps: commands, wheels, forces, poses, readings.
 
     Args:
         run: what was measured.
@@ -109,11 +108,18 @@ def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Stampe
         [(t, 1, i, Wheels(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(wheels)],
         [(t, 2, i, KnownForce(t, x, y)) for i, (t, x, y) in enumerate(force_rows(run.run).tolist())],
         [(row[0], 3, i, _pose(row, tilt.get(row[0]), sources)) for i, row in enumerate(poses)],
-        [(t, 4, i, Gyro(t, rate)) for i, (t, rate) in enumerate(gyro_rows(run.run).tolist())],
+        *_readings(run),
     )
     for _, _, _, sample in heapq.merge(*streams):
         assert isinstance(sample, Stamped)
         yield sample
+
+
+def _readings(run: PreparedRun) -> list[list[tuple[float, int, int, Sample]]]:
+    return [
+        [(t, kind, i, Reading(t, column, value)) for i, (t, value) in enumerate(rows.tolist())]
+        for kind, (column, rows) in enumerate(reading_rows(run.run).items(), start=4)
+    ]
 
 
 def _pose(row: list[float], tilt: tuple[float, float] | None, sources: Sequence[str]) -> Pose:

@@ -11,10 +11,11 @@ import numpy as np
 
 from slipwise.errors import SettingsError
 from slipwise.live.one_rotation import deviation, rotation_of
-from slipwise.live.samples import Command, Gyro, Pose, Wheels
+from slipwise.live.samples import Command, Pose, Reading, Wheels
 from slipwise.logs.corrections import late_by
 from slipwise.logs.findings.topics import ZeroTwist
 from slipwise.logs.fixes import fix_of_status
+from slipwise.logs.gyro import COLUMN as GYRO
 from slipwise.logs.joints import SideMotion
 from slipwise.logs.kinematics import twist_from_steering, twist_from_wheels
 from slipwise.logs.messages import (
@@ -200,10 +201,10 @@ def to_pose(kind: str, options: LogOptions, *, headed: bool = True) -> ToPose:
     return pose
 
 
-def to_gyro(message: Any, t: float) -> Gyro | None:
+def to_gyro(message: Any, t: float) -> Reading | None:
     """Return the yaw rate of an Imu, which REP-103 counts about the z axis, up."""
     (rate,) = _values(GYRO_VALUES, message)
-    return Gyro(t, rate) if math.isfinite(rate) else None
+    return Reading(t, GYRO, rate) if math.isfinite(rate) else None
 
 
 class FixPoses:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from slipwise.live.outputs import Path
-from slipwise.logs.measurements import Command, Gyro, KnownForce, Measurement, Pose, Twist, Wheels
+from slipwise.logs.measurements import Command, KnownForce, Measurement, Pose, Reading, Twist, Wheels
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,10 +80,10 @@ __all__ = [
     "Answer",
     "Command",
     "DriveStart",
-    "Gyro",
     "KnownForce",
     "Override",
     "Pose",
+    "Reading",
     "Request",
     "RunStart",
     "Sample",

@@ -11,6 +11,7 @@ import numpy as np
 from slipwise import _core
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Floats, Run
+from slipwise.logs.readings import number_rows
 from slipwise.logs.streams import RawStream
 
 COLUMN = "gyro_z"  # rad/s, counter-clockwise
@@ -49,15 +50,7 @@ def with_gyro(runs: tuple[Run, ...], stream: RawStream, starts: Floats) -> tuple
 
 def measured_rates(run: Run) -> Floats:
     """Return rows of (t, yaw rate) in s and rad/s, [N, 2], where no pose tells a heading."""
-    if (len(run.poses) and not run.poses.course) or COLUMN not in run.extra:
-        return _NONE
-    try:
-        t, rate = (np.asarray(run.extra[name], dtype=np.float64) for name in ("t", COLUMN))
-    except ValueError:  # text
-        return _NONE
-    rows = np.column_stack((t, rate))
-    rows = rows[np.isfinite(rows).all(axis=1)]
-    return rows[np.unique(rows[:, 0], return_index=True)[1]]
+    return _NONE if len(run.poses) and not run.poses.course else number_rows(run, COLUMN)
 
 
 def turns_otherwise(run: Run, rows: Floats) -> bool:
@@ -70,7 +63,7 @@ def turns_otherwise(run: Run, rows: Floats) -> bool:
         none if given is None else np.column_stack((given.t, given.v, given.vy, given.omega))
         for given in (run.commands, run.wheels)
     )
-    recording = _core.Recording(commands, wheels, np.empty((0, 3)), np.empty((0, 7)), rows)
+    recording = _core.Recording(commands, wheels, np.empty((0, 3)), np.empty((0, 7)), {COLUMN: rows})
     return any(otherwise(row) for row in _core.motion_evidence(settings, [recording]).gyro_turns)
 
 

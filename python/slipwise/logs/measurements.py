@@ -55,11 +55,12 @@ class Pose:
 
 
 @dataclass(frozen=True, slots=True)
-class Gyro:
-    """How fast a gyro measured the robot to turn."""
+class Reading:
+    """What a sensor of one number measured, such as a gyro."""
 
     t: float  # s
-    rate: float  # rad/s, counter-clockwise
+    column: str  # of a tidy log, such as gyro_z: which sensor it is (`logs.readings`)
+    value: float  # in the unit of that column
 
 
-Measurement = Command | Wheels | KnownForce | Pose | Gyro  # at one stamp in this order
+Measurement = Command | Wheels | KnownForce | Pose | Reading  # at one stamp in this order

@@ -17,8 +17,9 @@ from slipwise.logs.corrections import late_by, turned
 from slipwise.logs.fixes import FIXES, NO_FIX, fix_number
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, Floats
-from slipwise.logs.measurements import Command, Gyro, KnownForce, Measurement, Pose, Wheels
+from slipwise.logs.measurements import Command, KnownForce, Measurement, Pose, Reading, Wheels
 from slipwise.logs.options import LogOptions
+from slipwise.logs.readings import READINGS
 from slipwise.logs.streams import INCOMPLETE, WITHOUT_FIX, believed
 from slipwise.logs.tidy import HELD_BY, UNNAMED, pose_columns
 from slipwise.logs.tidy_columns import FORCE, InputColumns, command_columns, wheel_columns
@@ -112,7 +113,7 @@ class RowReader:
             ("wheel", self._read_wheels),
             ("force", self._read_force),
             ("pose", self._read_pose),
-            ("gyro", self._read_gyro),
+            *((kind.sensor, _reader_of(kind.column)) for kind in READINGS),
         )
 
     def _kinds_of(self, names: tuple[str, ...]) -> dict[str, str]:
@@ -157,11 +158,6 @@ class RowReader:
             x, y = (new if math.isfinite(new) else old for new, old in zip(said, self._force, strict=True))
             self._force = (x, y)
             yield KnownForce(view.t, x, y)
-
-    def _read_gyro(self, view: _View, _notes: list[str]) -> Iterator[Measurement]:
-        rate = view.now_of("gyro_z")
-        if math.isfinite(rate):
-            yield Gyro(view.t, rate)
 
     def _read_pose(self, view: _View, notes: list[str]) -> Iterator[Measurement]:
         columns = pose_columns(view, self._options, view.tally, notes)
@@ -276,6 +272,15 @@ class _View:
     def leave_out(self, reason: str) -> None:
         """Count something of this row that is not used."""
         self.tally.add(reason, reason, count=1, where=_WHERE)
+
+
+def _reader_of(column: str) -> Callable[[_View, list[str]], Iterator[Measurement]]:
+    def read(view: _View, _notes: list[str]) -> Iterator[Measurement]:
+        value = view.now_of(column)
+        if math.isfinite(value):
+            yield Reading(view.t, column, value)
+
+    return read
 
 
 def number_of(cells: Mapping[str, object], name: str) -> float:

@@ -7,6 +7,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from slipwise import _core
+
 PREFIXES = ("wheel_", "steer_")  # of columns and joints, before the names of wheels and of steering joints
 
 
@@ -15,7 +17,7 @@ class Column:
     """One column of a tidy log."""
 
     name: str
-    of: str  # the measurement it is part of: command, wheel, pose, gyro, force, label; or time, run
+    of: str  # the measurement it is part of: command, wheel, pose, force, a reading, label; or time, run
     type: str  # string, number or integer, as a Table Schema calls them
     unit: str
     meaning: str
@@ -96,7 +98,7 @@ COLUMNS = (
     Column(
         "frame", "pose", "integer", "", "poses are comparable only inside one frame of one run", "shared text"
     ),
-    Column("gyro_z", "gyro", "number", "rad/s", "measured yaw rate, counter-clockwise"),
+    *(Column(kind.column, kind.sensor, "number", kind.unit, kind.meaning) for kind in _core.reading_kinds()),
     Column("terrain", "label", "string", "", "name of the surface from here on", "text"),
 )
 BY_NAME = {column.name: column for column in COLUMNS}

@@ -3,30 +3,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 
 from slipwise import _core
 from slipwise.models.schema import NotNegative, Parameter, Positive, Section
 
 AXES = ("speed", "yaw_rate", "side")
-KINDS = ("dead_band", "saturation", "slew_rate_up", "slew_rate_down")
+KINDS = {row.name: row for row in _core.limit_rows()}
 SEPARATION = "limits.wheel_separation"
 _AXIS_UNITS = {"speed": "m/s", "yaw_rate": "rad/s", "side": "m/s"}
 _CORE_AXES = dict(
     zip(AXES, (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate, _core.LimitedAxis.Side), strict=True)
-)
-_CORE_KINDS = dict(
-    zip(
-        KINDS,
-        (
-            _core.LimitKind.DeadBand,
-            _core.LimitKind.Saturation,
-            _core.LimitKind.SlewRateUp,
-            _core.LimitKind.SlewRateDown,
-        ),
-        strict=True,
-    )
 )
 
 
@@ -63,7 +50,7 @@ def limits_section(search: _core.LimitSearch) -> LimitsSection:
     found = {(limit.axis, limit.kind): limit for limit in search.found}
 
     def learned(axis: str, kind: str) -> LearnedLimit | None:
-        limit = found.get((_CORE_AXES[axis], _CORE_KINDS[kind]))
+        limit = found.get((_CORE_AXES[axis], _core.LimitKind[kind]))
         return None if limit is None else LearnedLimit(value=limit.value, std=limit.std)
 
     axes = {axis: AxisLimitsSection(**{kind: learned(axis, kind) for kind in KINDS}) for axis in AXES}
@@ -81,10 +68,10 @@ def limit_rows(section: LimitsSection) -> list[Parameter]:
     """Return limits as rows of a model's parameters; each is known by itself."""
     rows = []
     for axis in AXES:
-        for kind in KINDS:
+        for kind, row in KINDS.items():
             limit: LearnedLimit | None = getattr(getattr(section, axis), kind)
             if limit is not None:
-                unit = _AXIS_UNITS[axis] + ("^2" if kind in ("slew_rate_up", "slew_rate_down") else "")
+                unit = _AXIS_UNITS[axis] + ("^2" if row.of_change else "")
                 rows.append(_row(f"limits.{axis}.{kind}", unit, limit.value, limit.std))
     if any(row.name.startswith("limits.side") for row in rows):
         rows.append(_row(SEPARATION, "m", section.wheel_separation, section.wheel_separation_std))
@@ -139,10 +126,7 @@ def core_limits(section: LimitsSection) -> _core.CommandLimits:
     def axis(name: str) -> _core.AxisLimits:
         limits: AxisLimitsSection = getattr(section, name)
         values = {kind: getattr(limits, kind) for kind in KINDS}
-        absent = {"dead_band": 0.0}
-        return _core.AxisLimits(
-            **{k: absent.get(k, math.inf) if v is None else v.value for k, v in values.items()}
-        )
+        return _core.AxisLimits(**{k: v.value for k, v in values.items() if v is not None})
 
     return _core.CommandLimits(
         axis("speed"),

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 from slipwise.models.channel_words import response_sentences
+from slipwise.models.limits import KINDS
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, physical_parameters
 from slipwise.models.schema import HeldOut
@@ -17,12 +18,6 @@ from slipwise.number_text import estimate_text, number_text
 
 BETTER = 1.05  # times; a smaller gain over the baseline is not given as a number
 SIGNIFICANT = 2.0  # standard deviations from zero from which on an offset is said
-_LIMITS = {
-    "dead_band": "dead band below",
-    "saturation": "at most",
-    "slew_rate_up": "acceleration at most",
-    "slew_rate_down": "braking at most",
-}
 _AXES = {"speed": "speed", "yaw_rate": "yaw rate", "side": "each side"}
 _NO_SLIP = "What was learned is not slip: poses and inputs of the log contradict each other."
 _SENSOR_PLACES = (("sensor_x", "ahead of", "behind"), ("sensor_y", "left of", "right of"))
@@ -61,7 +56,7 @@ def _limit_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:
     parts = []
     for axis, name in _AXES.items():
         of_axis = [p for p in parameters if p.name.startswith(f"limits.{axis}.") and p.identified]
-        said = [f"{_LIMITS[p.name.rpartition('.')[2]]} {_amount(p)}" for p in of_axis]
+        said = [f"{KINDS[p.name.rpartition('.')[2]].words} {_amount(p)}" for p in of_axis]
         if said:
             parts.append(f"{name}: {', '.join(said)}")
     return [f"Actuator limits of {'; '.join(parts)}."] if parts else []

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.logs.gyro import COLUMN as GYRO
 from slipwise.logs.gyro import gyro_alone, gyro_rows
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs, LeftOut, Run
+from slipwise.logs.readings import READINGS, number_rows
 from slipwise.segments.sources import pose_rows, sourced_rows
 
 Floats = NDArray[np.float64]
@@ -95,6 +97,14 @@ def force_rows(run: Run) -> Floats:
     return np.empty((0, 3)) if forces is None else np.column_stack((forces.t, forces.x, forces.y))
 
 
+def reading_rows(run: Run) -> dict[str, Floats]:
+    """Return what is learned from sensors of one number: rows of (t, number), [N, 2], by column."""
+    return {
+        kind.column: gyro_rows(run) if kind.column == GYRO else number_rows(run, kind.column)
+        for kind in READINGS
+    }
+
+
 def recording_of(
     run: Run, since: float = -np.inf, until: float = np.inf, sources: Sequence[str] = ()
 ) -> _core.Recording:
@@ -110,13 +120,15 @@ def recording_of(
     commands, wheels, attitudes, poses = recording_rows(run)
     if sources:
         poses = sourced_rows(run, poses, sources)
-    rows = (commands, wheels, attitudes, poses, gyro_rows(run), force_rows(run))
-    return _core.Recording(*(_between(each, since, until) for each in rows))
 
+    def part(rows: Floats) -> Floats:
+        first, last = np.searchsorted(rows[:, 0], (since, until)).tolist()
+        return rows[first:last]
 
-def _between(rows: Floats, since: float, until: float) -> Floats:
-    first, last = np.searchsorted(rows[:, 0], (since, until)).tolist()
-    return rows[first:last]
+    readings = {column: part(rows) for column, rows in reading_rows(run).items()}
+    return _core.Recording(
+        part(commands), part(wheels), part(attitudes), part(poses), readings, part(force_rows(run))
+    )
 
 
 def car_prior(runs: Sequence[Run], held: _core.CarCurves | None = None) -> _core.CarPrior | None:

@@ -56,7 +56,6 @@ ANY_LENGTH = {
     "Recording.__init__ attitudes",
     "Recording.__init__ commands",
     "Recording.__init__ forces",
-    "Recording.__init__ gyro",
     "Recording.__init__ poses",
     "Recording.__init__ wheels",
     "RegressionExample.__init__ features",

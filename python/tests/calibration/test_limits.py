@@ -57,7 +57,7 @@ def model(log: Log) -> Model:
 
 def test_a_drive_that_is_too_dull_says_what_would_show_a_limit() -> None:
     found = search(SIDES, dull_drive(1, 60.0), 1)
-    assert not {limit.kind for limit in found.found} & {_core.LimitKind.Saturation, _core.LimitKind.DeadBand}
+    assert not {limit.kind for limit in found.found} & {_core.LimitKind.saturation, _core.LimitKind.dead_band}
     text = " ".join(limits_advice(found))
     assert "No saturation found; the largest commands were 1.0 m/s" in text
     assert "No dead band found" in text
@@ -72,7 +72,7 @@ def test_simulated_physics_behind_limits_show_them() -> None:
     record = _core.WheelRecord(track_of(run.commands), np.ascontiguousarray(rows))
     found = _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN, None)
     tops = [
-        f for f in found.found if f.kind == _core.LimitKind.Saturation and f.axis == _core.LimitedAxis.Side
+        f for f in found.found if f.kind == _core.LimitKind.saturation and f.axis == _core.LimitedAxis.Side
     ]
     assert len(tops) == 1
     assert tops[0].value == pytest.approx(1.2, rel=0.05)
@@ -209,8 +209,8 @@ def test_limits_that_explain_little_one_by_one_are_found_together(real_log_dir: 
         learner.start_run()
         learner.push(recording_of(run))
     found = {(f.axis, f.kind): f.value for f in learner.find_limits(TRACK).search.found}
-    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.SlewRateUp)] == pytest.approx(2.6, rel=0.1)
-    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.SlewRateDown)] == pytest.approx(2.65, rel=0.1)
+    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.slew_rate_up)] == pytest.approx(2.6, rel=0.1)
+    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.slew_rate_down)] == pytest.approx(2.65, rel=0.1)
 
 
 def test_looking_for_limits_changes_nothing_that_is_learned(log: Log) -> None:

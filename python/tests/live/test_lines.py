@@ -17,10 +17,10 @@ from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import AppliedParameters, ModelText, Note, Odometry, Path
 from slipwise.live.samples import (
     Command,
-    Gyro,
     KnownForce,
     Override,
     Pose,
+    Reading,
     Request,
     RunStart,
     SurfaceCue,
@@ -134,7 +134,7 @@ def test_what_is_half_there_is_counted_and_the_rest_of_the_line_is_used() -> Non
     reader.read("t,odo_v,odo_omega,x,y,yaw,gyro_z,force_y")
     half, force, gyro = reader.read("1.0,0.5,,1,2,nan,0.2,0.7")[-3:]
     assert isinstance(half, Unusable)
-    assert (force, gyro) == (KnownForce(1.0, 0.0, 0.7), Gyro(1.0, 0.2))
+    assert (force, gyro) == (KnownForce(1.0, 0.0, 0.7), Reading(1.0, "gyro_z", 0.2))
     said = [each.reason for each in reader.read("1.1,0.5,,1.5,2,nan,,") if isinstance(each, Unusable)]
     assert "wheels with a number missing or impossible" in said
     assert "poses with a number missing or impossible" in said

@@ -19,7 +19,7 @@ from slipwise.live.ros_roles import (
     with_oriented_imu,
 )
 from slipwise.live.ros_transport import CueTopics, RosTransport
-from slipwise.live.samples import Gyro, Pose, Sample
+from slipwise.live.samples import Pose, Reading, Sample
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.wire import WireTopic
 from slipwise.logs.messages import IMU, NAV_SAT_FIX, POSE_STAMPED
@@ -174,14 +174,16 @@ def samples_of(taken: Roles, messages: dict[str, list[bytes]]) -> list[Sample]:
     transport = RosTransport(Wire(messages), taken, LogOptions(), name="slipwise", cues=CueTopics())
     found: list[Sample] = []
     transport.subscribe(found.append)
-    return [sample for sample in found if isinstance(sample, Pose | Gyro)]
+    return [sample for sample in found if isinstance(sample, Pose | Reading)]
 
 
 def test_yaw_rates_come_beside_positions_and_alone() -> None:
     beside = samples_of(roles(FIX, gyro=True), {"/fix": [fix(0)], "/imu": [imu(oriented=False)]})
     assert len(beside) == 2
-    assert Gyro(12.0, 0.3) in beside
-    assert samples_of(roles(None, gyro=True), {"/imu": [imu(oriented=True)]}) == [Gyro(12.0, 0.3)]
+    assert Reading(12.0, "gyro_z", 0.3) in beside
+    assert samples_of(roles(None, gyro=True), {"/imu": [imu(oriented=True)]}) == [
+        Reading(12.0, "gyro_z", 0.3)
+    ]
 
 
 def test_poses_of_further_topics_say_whose_they_are() -> None:

@@ -11,17 +11,21 @@ from sample_kinds import Kind, kinds
 from slipwise.calibration.surface_labels import labels_of
 from slipwise.errors import LogError
 from slipwise.logs import Log, LogOptions, Run, open_log, save_log
-from slipwise.logs.gyro import gyro_rows
-from slipwise.segments import force_rows, recording_rows, sourced_rows
+from slipwise.logs.readings import READINGS
+from slipwise.segments import force_rows, reading_rows, recording_rows, sourced_rows
 
-STREAMS = ("commands", "wheels", "attitudes", "poses", "gyro", "forces")
+STREAMS = ("commands", "wheels", "attitudes", "poses", "forces", *(kind.column for kind in READINGS))
 
 
 def streams(run: Run) -> dict[str, np.ndarray]:
     commands, wheels, attitudes, poses = recording_rows(run)
     sourced = sourced_rows(run, poses, (run.source, *run.others))
     return dict(
-        zip(STREAMS, (commands, wheels, attitudes, sourced, gyro_rows(run), force_rows(run)), strict=True)
+        zip(
+            STREAMS,
+            (commands, wheels, attitudes, sourced, force_rows(run), *reading_rows(run).values()),
+            strict=True,
+        )
     )
 
 

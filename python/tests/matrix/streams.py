@@ -21,7 +21,7 @@ import slipwise as sw
 from slipwise.calibration.coming import coming_of
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.live.replay import samples_of
-from slipwise.live.samples import Command, Gyro, KnownForce, Pose, Sample, Wheels
+from slipwise.live.samples import Command, KnownForce, Pose, Reading, Sample, Wheels
 from slipwise.logs import Log
 from slipwise.models import Model, load_model
 
@@ -148,8 +148,8 @@ def push(learner: sw.MotionLearner, sample: Sample) -> None:
         learner.push_wheels(sample.t, sample.v, sample.omega, sample.vy)
     elif isinstance(sample, KnownForce):
         learner.push_force(sample.t, sample.x, sample.y)
-    elif isinstance(sample, Gyro):
-        learner.push_gyro(sample.t, sample.rate)
+    elif isinstance(sample, Reading):
+        learner.push_reading(sample.t, sample.column, sample.value)
     elif isinstance(sample, Pose):
         if sample.roll is not None and sample.pitch is not None:
             learner.push_attitude(sample.t, sample.roll, sample.pitch)

@@ -14,6 +14,7 @@
 
 #include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/actuator/command_limits.hpp"
+#include "slipwise/actuator/limit_kinds.hpp"
 #include "slipwise/filter/prior.hpp"
 #include "slipwise/linear/gauss_newton.hpp"
 
@@ -27,9 +28,6 @@ struct WheelRecord {
   std::vector<BodyTwist> wheels;  ///< [t]
 };
 
-enum class LimitKind : std::uint8_t { DeadBand, Saturation, SlewRateUp, SlewRateDown };
-inline constexpr std::array kLimitKinds{LimitKind::DeadBand, LimitKind::Saturation, LimitKind::SlewRateUp,
-                                        LimitKind::SlewRateDown};
 double& limit_of(AxisLimits& limits, LimitKind kind);
 double limit_of(const AxisLimits& limits, LimitKind kind);
 /// Whether it limits anything.

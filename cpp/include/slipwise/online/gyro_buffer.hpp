@@ -7,6 +7,9 @@
 
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_gate.hpp"
+#include "slipwise/online/reading.hpp"
+#include "slipwise/segment/segment.hpp"
+#include "slipwise/sensor/sensor.hpp"
 
 namespace slipwise {
 
@@ -22,10 +25,15 @@ struct GyroTurn {
   double std;    ///< [rad]
 };
 
+Measured measured_turn(const GyroTurn& turn);
+
 /// Yaw rates in the order of their stamps. The bias is learned where the inputs stand still, and from turns of the
 /// course over longer times; it may drift.
 class GyroBuffer {
  public:
+  static constexpr ReadingKind kKind{
+      .column = "gyro_z", .sensor = "gyro", .unit = "rad/s", .meaning = "measured yaw rate, counter-clockwise"};
+
   /// Adds a sample, whose stamp is later than those before.
   void push(const YawRate& sample) { samples_.push_back(sample); }
   /// Learns the bias from the samples until `t` [s], where `inputs`, which are known until then, stand still.
@@ -34,6 +42,8 @@ class GyroBuffer {
   void see_course(const MeasuredPose& position);
   /// The turn over [start, end] [s]; empty if samples are missing.
   std::optional<GyroTurn> turn(double start, double end) const;
+  /// Between positions it measures the turn in place of their courses.
+  void measure(Segment& segment) const;
   /// [rad/s], and its standard deviation.
   double bias() const { return bias_; }
   double bias_std() const;

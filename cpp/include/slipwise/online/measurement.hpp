@@ -5,9 +5,9 @@
 #include <variant>
 
 #include "slipwise/online/force_buffer.hpp"
-#include "slipwise/online/gyro_buffer.hpp"
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_gate.hpp"
+#include "slipwise/online/reading.hpp"
 #include "slipwise/segment/ground.hpp"
 
 namespace slipwise {
@@ -23,7 +23,7 @@ struct WheelSample {
 };
 
 /// At one stamp, in this order: what was commanded, and what moved and pushed the robot, come before where it was.
-using Measurement = std::variant<CommandSample, WheelSample, KnownForce, Tilt, MeasuredPose, YawRate>;
+using Measurement = std::variant<CommandSample, WheelSample, KnownForce, Tilt, MeasuredPose, Reading>;
 
 /// Several functions as one, which takes each kind of measurement by its own.
 template <class... Functions>

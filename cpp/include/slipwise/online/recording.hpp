@@ -2,6 +2,7 @@
 // A recorded run, pushed through a learner as it would have come live.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,11 +17,11 @@ struct Recording {
   std::vector<InputSample> wheels;
   std::vector<Tilt> attitudes;
   std::vector<MeasuredPose> poses;
-  std::vector<YawRate> gyro = {};
+  std::array<std::vector<Reading>, kReadingKinds> readings = {};  ///< of each kind
   std::vector<KnownForce> forces = {};
 };
 
-/// Pushes all of it in the order of the stamps; at one stamp commands come first, poses and then the gyro last
+/// Pushes all of it in the order of the stamps; at one stamp commands come first, poses and then readings last
 /// (`Measurement`).
 void push(MotionLearner& learner, const Recording& run);
 

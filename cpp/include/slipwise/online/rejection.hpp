@@ -10,7 +10,7 @@
 namespace slipwise {
 
 /// Which stream a measurement came from.
-enum class Stream : std::uint8_t { Command, Wheels, Pose, Attitude, Gyro, Force };
+enum class Stream : std::uint8_t { Command, Wheels, Pose, Attitude, Force, Reading };
 inline constexpr std::size_t kStreams = 6;
 constexpr std::size_t enumerators(Stream /*type*/) { return kStreams; }
 

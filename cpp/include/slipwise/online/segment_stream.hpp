@@ -16,7 +16,6 @@
 #include "slipwise/online/car_stream.hpp"
 #include "slipwise/online/chord_finder.hpp"
 #include "slipwise/online/force_buffer.hpp"
-#include "slipwise/online/gyro_buffer.hpp"
 #include "slipwise/online/hold_times.hpp"
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/learner_times.hpp"
@@ -26,6 +25,7 @@
 #include "slipwise/online/pose_gate.hpp"
 #include "slipwise/online/pose_source.hpp"
 #include "slipwise/online/pose_twists.hpp"
+#include "slipwise/online/readings.hpp"
 #include "slipwise/online/rejection.hpp"
 #include "slipwise/online/sample_gate.hpp"
 #include "slipwise/online/segment_cutter.hpp"
@@ -117,7 +117,7 @@ class SegmentStream {
   /// The newest stamp of the run [s]; minus infinity before the first.
   double newest() const { return newest_; }
   const InputBuffer& commands() const { return commands_; }
-  const GyroBuffer& gyro() const { return gyro_; }
+  const GyroBuffer& gyro() const { return readings_.gyro(); }
   const AttitudeGate& attitudes() const { return attitudes_; }
   const InputBuffer& wheels() const { return wheels_; }
   const StreamSettings& settings() const { return settings_; }
@@ -168,7 +168,7 @@ class SegmentStream {
       self.wheel_timer_, self.learned_, self.slip_);
     a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
       self.learned_last_);
-    a(self.chords_, self.position_last_, self.gyro_, self.heading_, self.others_, self.turned_until_, self.turned_,
+    a(self.chords_, self.position_last_, self.readings_, self.heading_, self.others_, self.turned_until_, self.turned_,
       self.attitudes_, self.evidence_, self.forces_, self.steepest_);
   }
 
@@ -179,11 +179,10 @@ class SegmentStream {
   bool take(const Tilt& measured);
   /// Beside attitudes it is rejected.
   bool take(const KnownForce& force);
-  /// Turns between positions are taken from a gyro; poses tell theirs themselves.
-  bool take(const YawRate& rate);
+  bool take(const Reading& reading);
   /// No segment lies between a pose and what is a position alone.
   bool take(const MeasuredPose& pose);
-  bool arrives(Stream stream, double t, std::span<const double> numbers);
+  bool arrives(Stream stream, double t, std::span<const double> numbers, std::size_t kind = 0);
   bool take_input(Stream stream, const InputSample& sample);
   void advance(double until);
   void process_wheels(double until);
@@ -224,7 +223,7 @@ class SegmentStream {
   StreamSettings settings_;
   double keep_;  ///< how long inputs are kept [s]
   double newest_;
-  std::array<StampGate, kStreams> stamps_;
+  std::array<StampGate, kStreams - 1 + kReadingKinds> stamps_;  ///< of each kind of readings, which come last
   std::array<std::array<SpeedGate, 3>, 2> speeds_;
   InputBuffer commands_;
   InputBuffer wheels_;
@@ -254,7 +253,7 @@ class SegmentStream {
   long breaks_ = 0;           ///< times that poses were not learned from
   bool learned_last_ = true;  ///< whether the last pose was
   ChordFinder chords_;
-  GyroBuffer gyro_;
+  Readings readings_;
   bool position_last_ = false;           ///< whether the last pose was a position alone
   double heading_ = 0.0;                 ///< of the last pose that was accepted [rad]
   std::vector<PoseSource> others_;       ///< sources of poses beside the first

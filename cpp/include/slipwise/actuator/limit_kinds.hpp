@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of limits that an axis of the drive may have: model files, searches, bindings and words go by it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "slipwise/actuator/command_limits.hpp"
+
+namespace slipwise {
+
+enum class LimitKind : std::uint8_t { DeadBand, Saturation, SlewRateUp, SlewRateDown };
+inline constexpr std::array kLimitKinds{LimitKind::DeadBand, LimitKind::Saturation, LimitKind::SlewRateUp,
+                                        LimitKind::SlewRateDown};
+
+/// A kind of limit, in the order of `LimitKind`.
+struct LimitRow {
+  const char* name;            ///< of the field, also in a model file
+  double AxisLimits::* value;  ///< what is not limited has that of `AxisLimits{}`
+  bool of_change;              ///< its unit is that of the axis over seconds
+  const char* words;           ///< before the number in a sentence: "speed at most 0.5 m/s"
+};
+inline constexpr std::array<LimitRow, kLimitKinds.size()> kLimits{
+    {{.name = "dead_band", .value = &AxisLimits::dead_band, .of_change = false, .words = "dead band below"},
+     {.name = "saturation", .value = &AxisLimits::saturation, .of_change = false, .words = "at most"},
+     {.name = "slew_rate_up", .value = &AxisLimits::slew_rate_up, .of_change = true, .words = "acceleration at most"},
+     {.name = "slew_rate_down", .value = &AxisLimits::slew_rate_down, .of_change = true, .words = "braking at most"}}};
+
+inline const LimitRow& row_of(LimitKind kind) { return kLimits.at(static_cast<std::size_t>(kind)); }
+
+}  // namespace slipwise
