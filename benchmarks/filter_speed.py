@@ -84,7 +84,7 @@ def core_average(log: Log, length: float) -> Callable[[], None]:
     """Return the pass that `slipwise calibrate` makes: adapting priors and noise, one basis."""
     settings = Settings(basis=BASIS, learn_clock_offset=False)
     windows = collect_windows(prepare_run(log, "wheel"), length, settings.rules())
-    filters = (settings.filter_settings(), settings.average_settings())
+    filters = (settings.filter_settings(), _core.ModelAverageSettings())
 
     def work() -> None:
         average = _core.ModelAverage(BASIS, settings.bases(), False, False, False, *filters)

@@ -84,9 +84,9 @@ MECHANISMS = (
         Variant(f"both: joint {_ONE} alone", settings={"auto": {"bases": [_ONE], "structures": ["joint"]}}),
     ),
     Mechanism(
-        Variant("change detector", settings={"change": {"detect": False}}),
-        ("hypotheses/change_detector",),
-        (("hypotheses/model_average", r"change|[bB]ranch|resolve|trial|before_|kChanged"),),
+        Variant("branches", settings={"change": {"branches": False}}),
+        ("filter/branch_bank",),
+        (("filter/causal_filter", r"[bB]ranch"),),
     ),
     Mechanism(
         Variant("slip disturbance", settings={"slip_disturbance": {"learn": False}}),

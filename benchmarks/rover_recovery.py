@@ -65,7 +65,7 @@ def recover(case: Case, seed: int, seconds: float = SECONDS) -> Recovery:
     """Drive once and learn from it; the ground stays the same, so changes of it are not looked for."""
     drive = drive_case(case, seed, seconds)
     truth = true_slip(drive, _core.named_basis(case.basis))
-    settings = make_settings({"basis": case.basis, "change": {"detect": False}})
+    settings = make_settings({"basis": case.basis, "change": {"branches": False}})
     model = sw.calibrate(drive.log(seed=seed), input="wheel", settings=settings).model
     nees, agree = twist_nees(drive, case, truth)
     return Recovery(

@@ -77,12 +77,12 @@ def coloured(count: int, rng: np.random.Generator) -> Floats:
 NOISES = {"white": white, "heavy-tailed": heavy_tailed, "coloured": coloured}
 
 
-def tests_of(log: Log, input_name: str) -> tuple[WindowSet, list[_core.ChangeTest]]:
+def tests_of(log: Log, input_name: str) -> tuple[WindowSet, list[_core.SlipChange]]:
     """Learn a log causally by `auto`; return its windows and their tests for a change."""
     windows = learning_windows(prepare_run(log, input_name), input_name, Settings())
     settings, tests = Settings(), []
     dynamics, offset = learned_parts(settings, input_name)
-    filters = (settings.filter_settings(), settings.average_settings())
+    filters = (settings.filter_settings(), _core.ModelAverageSettings())
     average = _core.ModelAverage("auto", settings.bases(), dynamics, offset, False, *filters)
     for i in range(len(windows)):
         average.learn(windows.input_history(i), windows.segments[i])

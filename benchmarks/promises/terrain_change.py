@@ -35,7 +35,7 @@ MINUTES, HORIZON = 7.6, 5.0  # min, s
 FACTORS = (0.5, 0.75, 1.5)
 INPUTS = ("wheel", "command")
 MEAN, WORST = 1.15, 1.5  # times the heading error of a learner of the new terrain alone
-ALARMS, LOSS = 1.0, 1.01  # alarms per 1000 segments; times the heading error without the detector
+ALARMS, LOSS = 1.0, 1.01  # alarms per 1000 segments; times the heading error without branches
 NOISES = {"0.05": 0.7, "0.026": 0.32}  # mean heading error at 5 s [rad]: factor of white slip
 SLOW, DEGREES, CLOCK_OFFSET = 0.08, 4.0, 0.02
 
@@ -73,7 +73,7 @@ def judge(job: Job) -> Found:
     noise = NOISES[job.noise]
     robot = Robot(clock_offset=CLOCK_OFFSET, disturbance=Disturbance(noise, SLOW, DEGREES))
     settings = Settings()
-    unwatched = Settings.model_validate({"change": {"detect": False}})
+    unwatched = Settings.model_validate({"change": {"branches": False}})
     changed = _learned(robot, job, STEP_AT, settings)
     always = _learned(robot, job, 0.0, settings)
     plain = _learned(robot, job, 0.0, unwatched)

@@ -89,18 +89,6 @@ void bind_settings(nb::module_& m) {
       .def_rw("noise", &CausalFilterSettings::noise)
       .def_rw("force", &CausalFilterSettings::force)
       .def_rw("branches", &CausalFilterSettings::branches);
-  nb::class_<ChangeSettings>(m, "ChangeSettings")
-      .def(nb::init<>())
-      .def_rw("detect", &ChangeSettings::detect)
-      .def_rw("threshold", &ChangeSettings::threshold)
-      .def_rw("suspicion", &ChangeSettings::suspicion)
-      .def_rw("shortest", &ChangeSettings::shortest)
-      .def_rw("longest", &ChangeSettings::longest)
-      .def_rw("fraction", &ChangeSettings::fraction)
-      .def_rw("forget", &ChangeSettings::forget)
-      .def_rw("trial", &ChangeSettings::trial)
-      .def_rw("warm_up", &ChangeSettings::warm_up)
-      .def_rw("forgetting_time", &ChangeSettings::forgetting_time);
   nb::class_<WeightingSettings>(m, "WeightingSettings")
       .def(nb::init<>())
       .def_rw("learning_rate", &WeightingSettings::learning_rate)
@@ -109,7 +97,6 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<>())
       .def_rw("weighting", &ModelAverageSettings::weighting)
       .def_rw("largest_basis", &ModelAverageSettings::largest_basis)
-      .def_rw("change", &ModelAverageSettings::change)
       .def_rw("surfaces", &ModelAverageSettings::surfaces);
 }
 
@@ -189,11 +176,11 @@ void bind_estimate(nb::module_& m) {
         return correlated_pairs(covariance, least);
       },
       "covariance"_a, "least"_a, "Pairs of parameters with at least this correlation, the closest first.");
-  nb::class_<ChangeTest>(m, "ChangeTest", "The test of one segment for a change of terrain.")
+  nb::class_<SlipChange>(m, "SlipChange", "Whether slip jumped since the terrain counted as changed last.")
       .def(nb::init<>())
-      .def_ro("log_odds", &ChangeTest::log_odds)
-      .def_ro("segments", &ChangeTest::segments)
-      .def_ro("alarm", &ChangeTest::alarm);
+      .def_ro("log_odds", &SlipChange::log_odds)
+      .def_ro("segments", &SlipChange::segments)
+      .def_ro("alarm", &SlipChange::alarm);
   nb::class_<ModelAverage>(m, "ModelAverage", "Causal filters of several bases, weighted by how well they predict.")
       .def(
           "__init__",
@@ -216,7 +203,7 @@ void bind_estimate(nb::module_& m) {
           "Of delays alone, without an actuator model.")
       .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
       .def("state", &ModelAverage::state)
-      .def_prop_ro("change", [](const ModelAverage& average) { return ChangeTest(average.change()); })
+      .def_prop_ro("change", [](const ModelAverage& average) { return SlipChange(average.change()); })
       .def_prop_ro("model", &ModelAverage::model)
       .def_prop_ro("reference_speeds", [](const ModelAverage& average) {
         const ReferenceSpeeds speeds = average.reference_speeds();

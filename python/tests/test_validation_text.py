@@ -27,7 +27,7 @@ def test_wrong_settings_are_named_in_plain_words(subtests: pytest.Subtests) -> N
         ({"filter": 3}, "filter: must be a table of keys, not 3"),
         ({"auto": {"bases": []}}, "auto.bases: needs at least 1 entries"),
         ({"auto": {"bases": "edd-2"}}, "auto.bases: must be a list, not 'edd-2'"),
-        ({"change": {"detect": "perhaps"}}, "change.detect: must be true or false, not 'perhaps'"),
+        ({"change": {"branches": "perhaps"}}, "change.branches: must be true or false, not 'perhaps'"),
         (
             {"smoothing": {"drift": "up"}},
             "smoothing.drift: must be 'mean-reverting' or 'random-walk', not 'up'",
@@ -46,5 +46,5 @@ def test_wrong_settings_are_named_in_plain_words(subtests: pytest.Subtests) -> N
 
 def test_a_long_wrong_value_is_shortened() -> None:
     with pytest.raises(SettingsError) as caught:
-        make_settings({"change": {"detect": "x" * 500}})
+        make_settings({"change": {"branches": "x" * 500}})
     assert len(caught.value.what) < 120

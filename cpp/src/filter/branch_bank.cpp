@@ -26,7 +26,7 @@ SLIPWISE_TUNING(kShape, 2.0);                    // of the size, the part of sli
 SLIPWISE_TUNING(kForgetting, 0.05);              // for each jump, births in which all slip is forgotten
 SLIPWISE_TUNING(kForgetAfter, std::size_t{20});  // segments before the first of them
 SLIPWISE_TUNING(kMoves, 0.02);                   // of the reference speeds; slower robots are parked
-constexpr double kSure = 0.99;                   // of the weight; so much counts as another terrain at once
+constexpr double kSure = 0.9;                    // of the weight; so much counts as another terrain at once
 constexpr double kAlmostAll = 1.0 - 1e-12;       // of the weight, whose odds are finite
 SLIPWISE_TUNING(kTempered, 0.5);                 // power of the number of segments that count as one
 
@@ -150,11 +150,11 @@ void BranchBank::restart(const Estimate& known) {
     return;
   }
   branches_ = {};
-  branches_.add({.estimate = known, .number = ++births_}, 1.0);
+  branches_.add({.estimate = known, .number = ++births_, .born = segments_}, 1.0);
   led_by_ = known_ = births_;
   held_ = 0;
-  change_odds_ = 0.0;
-  leader_changed_ = changed_ = false;
+  change_ = {};
+  leader_changed_ = false;
 }
 
 void BranchBank::correct_leader(const Estimate& better) {
@@ -181,21 +181,25 @@ bool BranchBank::change_prior(const Eigen::VectorXd& old_std, const Eigen::Vecto
   return true;
 }
 
-/// With the hazard of so many seconds of motion, slip jumped just before the segment.
-void BranchBank::bear(const BranchSegment& driven, double motion) {
-  const double hazard = -std::expm1(-motion / kMotion);
+void BranchBank::expect_jump(const Estimate& prior, const Eigen::VectorXd& unit, double probability) {
+  bear(prior, unit, probability);
+  branches_.weigh(Eigen::VectorXd::Zero(branches_.weights().size()));
+}
+
+/// With this probability, slip jumped just before the next segment.
+void BranchBank::bear(const Estimate& prior, const Eigen::VectorXd& unit, double hazard) {
   const Estimate now = mixture();
   const double jumped = branches_.log_evidence() + std::log(hazard);
   branches_.weigh(Eigen::VectorXd::Constant(branches_.weights().size(), std::log1p(-hazard)));
   const double share = std::log(static_cast<double>(kinds_.size() * kSizes.size()));
   for (const JumpKind& kind : kinds_) {
     for (const double size : kSizes) {
-      branches_.add({.estimate = after_jump(now, kind, size, driven.unit), .number = ++births_}, 0.0, jumped - share);
+      branches_.add({.estimate = after_jump(now, kind, size, unit), .number = ++births_, .born = segments_}, 0.0,
+                    jumped - share);
     }
   }
-  if (segments_ > kForgetAfter) {
-    const Eigen::Index slip = driven.unit.size();
-    branches_.add({.estimate = forgotten(now, driven.prior, slip), .number = ++births_}, 0.0,
+  if (segments_ >= kForgetAfter) {
+    branches_.add({.estimate = forgotten(now, prior, unit.size()), .number = ++births_, .born = segments_}, 0.0,
                   jumped + std::log(kForgetting));
   }
 }
@@ -221,17 +225,34 @@ void BranchBank::follow_leader() {
   const bool leads = weights[static_cast<Eigen::Index>(heaviest)] > 0.5;
   leader_changed_ = leads && branches_[heaviest].number != led_by_;
   led_by_ = leads ? branches_[heaviest].number : led_by_;
+}
+
+/// By the branches that were born since it counted as changed last.
+SlipChange BranchBank::look_for_change() {
   double young = 0.0;
+  double most = 0.0;
+  std::size_t born = segments_;
   for (std::size_t i = 0; i < branches_.size(); ++i) {
-    young += branches_[i].number > known_ ? weights[static_cast<Eigen::Index>(i)] : 0.0;
+    const double weight = branches_.weights()[static_cast<Eigen::Index>(i)];
+    if (branches_[i].number > known_) {
+      young += weight;
+      born = weight > most ? branches_[i].born : born;
+      most = std::max(most, weight);
+    }
   }
-  held_ = young > 0.5 ? held_ + 1 : 0;
-  change_odds_ = std::max(std::log(young) - std::log1p(-std::min(young, kAlmostAll)), 0.0);
-  changed_ = held_ == kHeld || young > kSure;
-  if (changed_) {
+  if (young <= 0.5) {
+    held_ = 0;
+    return {};
+  }
+  ++held_;
+  const SlipChange change{.log_odds = std::log(young) - std::log1p(-std::min(young, kAlmostAll)),
+                          .segments = static_cast<int>(segments_ - born),
+                          .alarm = held_ == kHeld || young > kSure};
+  if (change.alarm) {
     known_ = births_;
     held_ = 0;
   }
+  return change;
 }
 
 /// By the linearisation at `mean`, where the residual is `innovation`. Neighbours that err alike count for less.
@@ -279,10 +300,10 @@ IekfUpdate BranchBank::learn(const MotionModel& model, const BranchSegment& driv
   const Rows innovation = error_of(segment, at);
   const RowsCovariance covariance = innovation_covariance(state.estimate.covariance, at.by_parameter, noise);
   const double motion = seconds_of_motion(at.path, driven.speeds);
-  ++segments_;
   if (motion > kMoves * (segment.end - segment.start)) {
-    bear(driven, motion);
+    bear(driven.prior, driven.unit, -std::expm1(-motion / kMotion));
   }
+  ++segments_;
   weigh(at, mean, innovation, noise, driven.alike);
   prune();
   const Eigen::VectorXd found = mixture().mean;
@@ -296,6 +317,7 @@ IekfUpdate BranchBank::learn(const MotionModel& model, const BranchSegment& driv
   update.innovation_covariance = covariance;
   update.nis = normalised_square(innovation, covariance);
   follow_leader();
+  change_ = look_for_change();
   return update;
 }
 

@@ -20,6 +20,9 @@ namespace {
 
 SLIPWISE_TUNING(kSpeedChange, 0.1);  // the prior follows the speeds when their logarithm moves by more than this
 
+SLIPWISE_TUNING(kExpected, 0.5);   // probability of a jump where something says that the terrain may have changed
+SLIPWISE_TUNING(kForgotten, 0.1);  // of the prior variance of slip, given back there where none may jump
+
 SLIPWISE_TUNING(kFirst, 8.0);  // segments after which the first refit begins, and the last
 SLIPWISE_TUNING(kLast, std::size_t{256});
 SLIPWISE_TUNING(kFactor, std::numbers::sqrt2);  // of the segments, until another begins
@@ -38,7 +41,7 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
       state_(model_, settings.noise),
       force_(model_.basis(), settings.force),
       force_at_(std::numeric_limits<double>::infinity()),
-      branches_(model_, settings.branches) {
+      branches_(model_, {.follow = settings.branches.follow && !force_.learned()}) {  // sudden changes count as force
   follow({.v = 1.0, .omega = 1.0});
   started_ = false;
   stated_ = Eigen::VectorXd::Ones(model_.size());
@@ -86,6 +89,9 @@ Estimate CausalFilter::prior(const ReferenceSpeeds& speeds) const {
   return known;
 }
 
+/// Slip that explains all motion.
+Eigen::VectorXd CausalFilter::unit() const { return slip_prior_std(model_.basis(), speeds_, 1.0); }
+
 Eigen::VectorXd CausalFilter::prior_std() const { return prior(speeds_).covariance.diagonal().cwiseSqrt(); }
 
 /// Time passes for a force from the middle of one segment to that of the next.
@@ -106,6 +112,15 @@ void CausalFilter::forget(double fraction) {
   covariance.diagonal().head(slip) += fraction * slip_std_.cwiseAbs2();
   state_.noise_scale.reset_gain();
   start_from_here();
+}
+
+void CausalFilter::expect_change() {
+  if (!branches_.follow()) {
+    forget(kForgotten);
+    return;
+  }
+  branches_.expect_jump(prior(speeds_), unit(), kExpected);
+  state_.estimate = branches_.mixture();
 }
 
 /// The next segments are learned on the present estimate, and fitted again on it.
@@ -239,7 +254,7 @@ IekfUpdate CausalFilter::follow_branches(const InputHistory& inputs, const Segme
   const BranchSegment driven{.inputs = inputs,
                              .segment = segment,
                              .prior = prior(speeds_),
-                             .unit = slip_prior_std(model_.basis(), speeds_, 1.0),
+                             .unit = unit(),
                              .speeds = speeds_,
                              .alike = stated_.head(model_.slip_size()).cwiseAbs2().maxCoeff()};
   return branches_.learn(model_, driven, settings_, state_);

@@ -34,7 +34,7 @@ void put(MotionPosterior& all, const std::vector<Eigen::Index>& places, const Es
   all.prior_std(places) = prior_std;
 }
 
-bool stronger(const ChangeTest& a, const ChangeTest& b) {
+bool stronger(const SlipChange& a, const SlipChange& b) {
   return std::tuple(a.alarm, a.log_odds) > std::tuple(b.alarm, b.log_odds);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Causal model averaging, and the trial of what forgot against what did not after a change of terrain.
+// Causal model averaging.
 #include "slipwise/hypotheses/model_average.hpp"
 
 #include <Eigen/Cholesky>
@@ -17,18 +17,6 @@
 
 namespace slipwise {
 namespace {
-
-SLIPWISE_TUNING(kChanged, 0.2);  // weight of the models that forgot, at first: most disturbances of real drives pass
-SLIPWISE_TUNING(kActive, 0.01);  // weight from which a model has a say
-SLIPWISE_TUNING(kNoisy, 4.0);    // times as large variances as those of the best poses hide a change, and look like one
-
-/// Whether a segment comes from a source of poses that tells no change of terrain.
-bool far_noisier(const Segment& segment, const Eigen::Vector3d& scale) {
-  if (shows_noise(segment)) {
-    return false;
-  }
-  return segment.measured.front().sensor.noise_factor.cwiseQuotient(scale).array().log().mean() > std::log(kNoisy);
-}
 
 /// One basis as it is, several as their union.
 Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
@@ -65,56 +53,11 @@ std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& 
   return places;
 }
 
-bool has_term(const Basis& basis, const std::string& name) {
-  for (std::size_t i = 0; i < basis.size(); ++i) {
-    if (basis.parameter_name(i) == name) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// The terms linear in V or w, which every terrain shows; all terms where the basis has none of them.
-std::vector<Eigen::Index> changing_terms(const Basis& basis) {
-  const Basis linear = named_basis("full-linear-6");
-  std::vector<Eigen::Index> all(basis.size());
-  std::iota(all.begin(), all.end(), Eigen::Index{0});
-  std::vector<Eigen::Index> found;
-  std::ranges::copy_if(all, std::back_inserter(found), [&](Eigen::Index i) {
-    return has_term(linear, basis.parameter_name(static_cast<std::size_t>(i)));
-  });
-  return found.empty() ? all : found;
-}
-
-/// Of the changing terms, by their places among these: all, the forward slip that goes with V and the yaw slip that
-/// goes with w together, and each of the two alone.
-ChangeKinds change_kinds(const Basis& basis, const std::vector<Eigen::Index>& changing) {
-  const Basis main = named_basis("edd-2");
-  std::set<std::vector<Eigen::Index>> kinds;
-  std::vector<Eigen::Index> all;
-  std::vector<Eigen::Index> both;
-  for (const Eigen::Index term : changing) {
-    const Eigen::Index place = std::ssize(all);
-    all.push_back(place);
-    if (has_term(main, basis.parameter_name(static_cast<std::size_t>(term)))) {
-      both.push_back(place);
-      kinds.insert({place});
-    }
-  }
-  kinds.insert(both);
-  kinds.insert(all);
-  kinds.erase(std::vector<Eigen::Index>{});
-  return {kinds.begin(), kinds.end()};
-}
-
 }  // namespace
 
 ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, ActuatorParameters learned,
                            const CausalFilterSettings& filter, const ModelAverageSettings& settings)
-    : model_(averaged_basis(std::move(name), bases), learned),
-      settings_(settings),
-      changing_(changing_terms(model_.basis())),
-      detector_(settings.change, change_kinds(model_.basis(), changing_)) {
+    : model_(averaged_basis(std::move(name), bases), learned), settings_(settings) {
   const Eigen::VectorXd prior = prior_weights(bases, settings.largest_basis);
   for (const Basis& basis : bases) {
     filters_.add(CausalFilter(MotionModel(basis, learned), filter), prior[std::ssize(places_)]);
@@ -152,15 +95,13 @@ void ModelAverage::start(const InputHistory& inputs, const Segment& segment) {
   while (advance()) {
   }
   learning_ = Learning{.inputs = inputs, .segment = segment};
+  speeds_.see(inputs, segment);
+  note_recent();
 }
 
 bool ModelAverage::advance() {
   if (!learning_) {
     return false;
-  }
-  if (!present(learning_).tested) {
-    look_for_change();
-    return true;
   }
   update_next_filter();
   if (present(learning_).updates.size() < filters_.size()) {
@@ -173,23 +114,6 @@ bool ModelAverage::advance() {
 
 bool ModelAverage::refit_slice() {
   return std::ranges::any_of(filters_.keys(), [](CausalFilter& filter) { return filter.refit_slice(); });
-}
-
-void ModelAverage::look_for_change() {
-  Learning& now = present(learning_);
-  speeds_.see(now.inputs, now.segment);
-  moved_ = false;
-  note_recent();
-  change_ = undecided_ > 0 || trial_ ? ChangeTest{} : test_for_change(now.inputs, now.segment);
-  if (change_.suspicion) {
-    const auto first = std::ssize(recent_) - std::min<std::ptrdiff_t>(change_.segments, std::ssize(recent_));
-    suspected_since_ = recent_.empty() ? now.segment.start : recent_[static_cast<std::size_t>(first)].segment.start;
-    announced_ = change_.alarm;
-    if (!handed_over_) {
-      branch();
-    }
-  }
-  now.tested = true;
 }
 
 void ModelAverage::update_next_filter() {
@@ -205,54 +129,20 @@ void ModelAverage::reweigh() {
   }
   const std::vector<IekfUpdate>& updates = present(learning_).updates;
   update_ = updates[filters_.heaviest()];
-  const BranchBank& branches = filters_[filters_.heaviest()].branches();
-  if (branches.follow()) {
-    change_ = {.log_odds = branches.change_odds(), .alarm = branches.changed()};
-  }
+  look_for_change();
   filters_.learn(common_log_scores(filters_.weights(), updates), settings_.weighting);
-  if (undecided_ > 0) {
-    --undecided_;
-    if (undecided_ == 0) {
-      resolve();
-    }
+  if (change_.alarm) {
+    filters_.begin_with(filters_.weights(), 0);  // of a new terrain, few data have spoken
   }
 }
 
-/// By what the average predicted as it was before the segments that are tested together: the noise factors and the
-/// weights follow a change at once, and would hide it.
-ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segment& segment) {
-  const ChangeSettings& change = settings_.change;
-  if (!change.detect || far_noisier(segment, filters_[0].noise_scale())) {
-    return {};
+void ModelAverage::look_for_change() {
+  change_ = filters_[filters_.heaviest()].branches().change();
+  if (change_.alarm) {
+    const auto first = std::ssize(recent_) - std::min<std::ptrdiff_t>(change_.segments, std::ssize(recent_));
+    changed_since_ =
+        recent_.empty() ? present(learning_).segment.start : recent_[static_cast<std::size_t>(first)].segment.start;
   }
-  before_.push_back(state());
-  if (std::ssize(before_) > change.longest) {
-    before_.pop_front();
-  }
-  const AverageState& known = before_.front();
-  const auto at = linearize_segment(model_, known.estimate.mean, inputs, segment);
-  const RowsCovariance covariance =
-      prediction_covariance(at, known.estimate.covariance, filters_[0].noise().shape, known.noise_scale);
-  const Eigen::VectorXd nominal = slip_prior_std(model_.basis(), speeds_.reference(), change.fraction);
-  const RowsJacobian by_change = at.by_parameter(Eigen::all, changing_) * nominal(changing_).asDiagonal();
-  return detector_.see(at.path.directions(), error_of(segment, at), covariance, by_change);
-}
-
-/// Every model once as if the terrain had changed and once as it was: what follows decides between them, so that a
-/// passing disturbance costs little, and the old terrain is known at once where it comes back soon.
-void ModelAverage::branch() {
-  before_.clear();
-  detector_.restart();
-  std::vector<std::size_t> twice = side_places(0);
-  twice.insert(twice.end(), twice.begin(), twice.end());
-  filters_ = filters_.chosen(twice);
-  Eigen::VectorXd weights = (1.0 - kChanged) * filters_.weights();
-  for (const std::size_t i : side_places(0)) {
-    filters_[i].forget(settings_.change.forget);
-    weights[static_cast<Eigen::Index>(i)] = kChanged * filters_.weights()[static_cast<Eigen::Index>(i)];
-  }
-  filters_.begin_with(weights, filters_.observed());
-  undecided_ = settings_.change.trial;
 }
 
 void ModelAverage::forget(double fraction) {
@@ -261,15 +151,7 @@ void ModelAverage::forget(double fraction) {
   }
 }
 
-/// Keeps the models of the terrain that predicted better.
-void ModelAverage::resolve() {
-  const Eigen::VectorXd weights = basis_weights();
-  const bool changed = filters_.weights().head(weights.size()).sum() > filters_.weights().tail(weights.size()).sum();
-  change_.alarm = changed && !announced_;
-  moved_ = changed;
-  filters_ = filters_.chosen(side_places(changed ? 0 : 1));
-  filters_.begin_with(weights, changed ? 0 : filters_.observed());  // of a new terrain, few data have spoken
-}
+void ModelAverage::expect_change() { std::ranges::for_each(filters_.keys(), &CausalFilter::expect_change); }
 
 std::vector<std::size_t> ModelAverage::side_places(std::size_t side) const {
   std::vector<std::size_t> places(places_.size());

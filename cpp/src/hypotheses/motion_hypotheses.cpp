@@ -151,6 +151,14 @@ void MotionHypotheses::forget(double fraction) {
   }
 }
 
+void MotionHypotheses::expect_change() {
+  for (ModelAverage* average : averages_of(*this)) {
+    if (average != nullptr) {
+      average->expect_change();
+    }
+  }
+}
+
 void MotionHypotheses::start(const DrivenSegment& segment, bool wheels_known) {
   if (cascaded_ && wheels_known && !tried(Structure::Cascaded)) {
     join_cascade();

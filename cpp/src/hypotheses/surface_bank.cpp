@@ -276,24 +276,21 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
   }
   leader_ = leader;
   const bool others = surfaces_.size() > (present_ ? 1 : 0);
-  for_each(averages, [&](std::size_t i, ModelAverage& average) { average.hand_over(others && i == leader); });
-  const ModelAverage& first = *averages[leader];
-  if (first.trial()) {
+  const auto changed_since = averages[leader]->take_change();
+  if (averages[leader]->trial()) {
     return settle(averages, leader, law, false);
   }
-  if (first.change().suspicion && others) {
+  if (!changed_since) {
+    return false;
+  }
+  if (others) {
     label_.clear();
-    open(averages, law, candidates_of_change(), first.suspected_since());
+    open(averages, law, candidates_of_change(), *changed_since);
     return true;
   }
-  if (first.change().suspicion) {  // a trial of the average's own, which ends with `moved` where it is confirmed
-    for_each(averages,
-             [&](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(first.suspected_since()); });
-  }
-  if (first.moved()) {
-    leave_present(averages, law);
-    enter_new();
-  }
+  for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(*changed_since); });
+  leave_present(averages, law);
+  enter_new();
   return false;
 }
 

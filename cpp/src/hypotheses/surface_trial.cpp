@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kProbes = 20;     // segments by which surfaces are compared
 constexpr std::size_t kProbeEvery = 4;  // segments from one to the next
+constexpr std::ptrdiff_t kRecent = 10;  // segments that are learned again on another surface, at most
 
 }  // namespace
 
@@ -25,7 +26,7 @@ void ModelAverage::note_recent() {
   }
   const Learning& now = present(learning_);
   recent_.push_back({now.inputs, now.segment, remember(), state()});
-  if (std::ssize(recent_) > settings_.change.longest) {
+  if (std::ssize(recent_) > kRecent) {
     recent_.pop_front();
   }
   if (filters_.observed() % kProbeEvery == 0) {
@@ -127,7 +128,7 @@ ModelAverage::Side ModelAverage::side_of(const SurfaceCandidate& candidate, std:
   start.observed = changed ? 0 : start.observed;
   Side side{.filters = filters_on(start, drift), .state = {}};
   if (changed) {
-    std::ranges::for_each(side.filters.keys(), [&](CausalFilter& filter) { filter.forget(settings_.change.forget); });
+    std::ranges::for_each(side.filters.keys(), &CausalFilter::expect_change);
   }
   side.state = state_of(side.filters.keys(), start.weights);
   return side;
@@ -146,10 +147,6 @@ void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, s
                               const DisturbanceModel& law, double since) {
   if (trial_) {
     settle(0);
-  }
-  if (undecided_ > 0) {
-    resolve();
-    undecided_ = 0;
   }
   const std::size_t first = recent_since(since);
   mark_parting(since);
@@ -174,8 +171,6 @@ void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, s
   trial.sides.weigh(Eigen::VectorXd::Zero(std::ssize(candidates)));
   filters_ = std::move(filters);
   trial_ = std::move(trial);
-  before_.clear();
-  detector_.restart();
   recent_.clear();
   mix_trial();
 }
@@ -201,6 +196,7 @@ void ModelAverage::reweigh_trial() {
   const Learning& now = present(learning_);
   const std::size_t bases = places_.size();
   update_ = now.updates[filters_.heaviest()];
+  change_ = {};
   Eigen::VectorXd scores(trial.probabilities().size());
   for (std::size_t i = 0; i < trial.sides.size(); ++i) {
     SurfaceSide& side = trial.sides[i];

@@ -88,12 +88,12 @@ const HorizonErrors::Known& HorizonErrors::before(double t) const {
   return known_.front();
 }
 
-void HorizonErrors::learn(double end, Structure structure, double squared, double nominal_squared) {
+void HorizonErrors::learn(double end, Structure structure, double squared, double nominal_squared, double age) {
   recent_[index(structure)].learn(squared);
   nominal_[index(structure)].learn(nominal_squared);
   known_.push_back({.until = end, .students = known_.back().students});
   known_.back().students[index(structure)] = recent_[index(structure)].fitted();
-  if (known_.size() > kKept) {
+  while (known_.size() > kKept && !later(known_[1].until, end - age)) {
     known_.pop_front();
   }
 }
@@ -113,8 +113,9 @@ StudentT HeldOutErrors::student(double t, double horizon, Structure structure) c
     return {.inflation = 1.0, .dof = kMostDof};
   }
   const auto apart = [&](double each) { return std::abs(std::log(each / horizon)); };
-  const auto nearest = std::ranges::min_element(horizons_, {}, apart) - horizons_.begin();
-  return before(static_cast<std::size_t>(nearest), t).students[static_cast<std::size_t>(structure)];
+  const auto nearest = std::ranges::min_element(horizons_, {}, apart);
+  const auto place = static_cast<std::size_t>(nearest - horizons_.begin());
+  return before(place, t - std::max(*nearest, kReady)).students[static_cast<std::size_t>(structure)];
 }
 
 std::vector<StudentT> HeldOutErrors::nominal(Structure structure) const {
@@ -122,10 +123,6 @@ std::vector<StudentT> HeldOutErrors::nominal(Structure structure) const {
   std::ranges::transform(errors_, std::back_inserter(found),
                          [&](const HorizonErrors& errors) { return errors.nominal(structure); });
   return found;
-}
-
-const HorizonErrors::Known& HeldOutErrors::before(std::size_t horizon, double start) const {
-  return errors_[horizon].before(start - std::max(horizons_[horizon], kReady));
 }
 
 void HeldOutErrors::keep(std::shared_ptr<const HeldOutPrediction> prediction) {

@@ -92,18 +92,19 @@ void MotionLearner::start_drive(const DriveStart& start) {
   known_.replace(now_known(known_.newest().until));
 }
 
-/// Without a memory there is nothing to recall: what is the terrain's becomes as unsure as after a suspicion.
+/// Without a memory there is nothing to recall, and slip may jump.
 void MotionLearner::cue_surface(const std::string& label) {
-  const ModelAverageSettings& average = settings_.hypotheses.average;
-  if (!average.surfaces.remember) {
-    if (label.empty()) {
-      forget(average.change.forget);
-    }
+  const bool remember = settings_.hypotheses.average.surfaces.remember;
+  if (!remember && !label.empty()) {
     return;
   }
   work_through();  // what waits was driven on the surface before
-  hypotheses_.cue_surface(disturbance_.law(), label);
-  note_surfaces(runs_, stream_.newest());
+  if (remember) {
+    hypotheses_.cue_surface(disturbance_.law(), label);
+    note_surfaces(runs_, stream_.newest());
+  } else {
+    hypotheses_.expect_change();
+  }
   known_.replace(now_known(known_.newest().until));
 }
 

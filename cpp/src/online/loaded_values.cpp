@@ -22,7 +22,6 @@ using archive::require;
 constexpr double kRounding = 1e-6;   // of the largest variance: by so much a covariance may miss being one
 constexpr double kLongest = 4000.0;  // [s] of a segment: more than the longest prediction
 constexpr std::size_t kAxes = 3;     // of a twist
-constexpr int kMostTested = 1000;    // segments in which a change is looked for
 constexpr double kLargest = 1e150;   // whose square is a number still
 
 bool possible(double value) { return std::abs(value) < kLargest; }
@@ -192,16 +191,12 @@ void LoadedValues::check(Type<KnotCurve> /*type*/, const KnotCurve& value) {
           "a curve's knots do not fit together");
 }
 
-void LoadedValues::check(Type<ChangeSettings> /*type*/, const ChangeSettings& value) {
-  require(0 < value.shortest && value.shortest <= value.longest && value.longest <= kMostTested && 0 <= value.trial,
-          "a change is tested over no segments, or too many");
-}
-
 void LoadedValues::check(Type<StreamSettings> /*type*/, const StreamSettings& value) {
   const auto is_length = [](double seconds) { return seconds > 0.0 && seconds < kLongest; };
   require(is_length(value.segment_length) && std::ranges::all_of(value.horizons, is_length) &&
               value.unknown_after >= 0.0 && value.latency >= 0.0 && value.latency < kLongest &&
-              (!value.stride || is_length(*value.stride)),
+              (!value.stride || is_length(*value.stride)) &&
+              (!value.embargo || (*value.embargo >= 0.0 && *value.embargo < kLongest)),
           "a segment has no length");
 }
 

@@ -48,7 +48,7 @@ DisturbanceFilter disturbance_of(const LearnerSettings& settings) {
 double longest_back(const StreamSettings& settings) {
   double longest = kRecent * settings.segment_length;
   for (const double horizon : settings.horizons) {
-    longest = std::max(longest, 3.0 * horizon);
+    longest = std::max(longest, 2.0 * horizon + std::max(horizon, settings.age_of_known(horizon)));
   }
   return longest;
 }
@@ -264,7 +264,8 @@ void MotionLearner::publish(const DrivenSegment& segment) {
 /// Predicts a target from what was known before it, then holds it against what was measured.
 void MotionLearner::judge(const TargetSegment& target) {
   const double horizon = settings_.stream.horizons[target.horizon];
-  const Knowledge& known = known_.at(target.driven.segment.start - settings_.stream.age_of_known(horizon));
+  const double age = settings_.stream.age_of_known(horizon);
+  const Knowledge& known = known_.at(target.driven.segment.start - age);
   const DrivenSegment driven =
       known.sources ? measured_by(*known.sources, target, known.motion->noise_scale) : target.driven;
   const Segment& segment = driven.segment;
@@ -274,7 +275,7 @@ void MotionLearner::judge(const TargetSegment& target) {
   const Rows measured = rows_of(segment.measured);
   const Directions directions = directions_of(segment.measured);
   const Structure structure = known.motion->structure;
-  const HorizonErrors::Known earlier = errors_.before(target.horizon, segment.start);
+  const HorizonErrors::Known earlier = errors_.before(target.horizon, segment.start - age);
   const StudentT student = earlier.students[index(structure)];
   const double as_three = 3.0 / static_cast<double>(measured.size());  // rows, whose errors are known by three
   const RowsCovariance of_inputs =
@@ -285,7 +286,7 @@ void MotionLearner::judge(const TargetSegment& target) {
       as_three * normalised_square(shorter_error(directions, measured, expected.pose), expected.covariance);
   const double nominal_squared =
       as_three * normalised_square(shorter_error(directions, measured, nominal.pose), nominal.covariance);
-  errors_.of(target.horizon).learn(driven.known_at, structure, squared, nominal_squared);
+  errors_.of(target.horizon).learn(driven.known_at, structure, squared, nominal_squared, horizon + age);
   const Knowledge& after = known_.at(segment.end);
   const double used = std::max({known.until, recent.empty() ? -kNever : recent.back()->known_at, earlier.until});
   const bool at_start = segment.initial || settings_.stream.car;  // what the drive did then was measured

@@ -49,14 +49,14 @@ TEST_CASE("a jump of yaw slip is followed within ten segments, and counts as ano
     int changes = 0;
     for (const Segment& segment : after.segments) {
       branches.learn(after.inputs, segment, kSpeeds);
-      changes += branches.branches().changed() ? 1 : 0;
+      changes += branches.branches().change().alarm ? 1 : 0;
     }
     CHECK(std::abs(branches.estimate().mean[kYaw] - jumped) < 0.03);
     CHECK(std::abs(plain.estimate().mean[kYaw] - jumped) > 0.06);
     const auto later = driven(model, jumped, 93, 30);
     for (const Segment& segment : later.segments) {
       branches.learn(later.inputs, segment, kSpeeds);
-      changes += branches.branches().changed() ? 1 : 0;
+      changes += branches.branches().change().alarm ? 1 : 0;
     }
     CHECK(changes == 1);
   }
@@ -72,7 +72,7 @@ TEST_CASE("where slip stays, it is known as well as if it never jumped") {
     for (const Segment& segment : drive.segments) {
       branches.learn(drive.inputs, segment, kSpeeds);
       plain.learn(drive.inputs, segment, kSpeeds);
-      CHECK_FALSE(branches.branches().changed());
+      CHECK_FALSE(branches.branches().change().alarm);
       followed += std::abs(branches.estimate().mean[kYaw] + 0.3);
       fixed += std::abs(plain.estimate().mean[kYaw] + 0.3);
     }

@@ -15,7 +15,6 @@ inline const DisturbanceModel kWhiteSlip{.candidates = {{0.0, 0.0, 1.0}}, .weigh
 inline ModelAverage remembering_average() {
   ModelAverageSettings settings;
   settings.surfaces.remember = true;
-  settings.change.detect = false;
   return {"auto", {{"none", {}, {}, {}}, named_basis("edd-2")}, {}, {}, settings};
 }
 

@@ -16,9 +16,11 @@ const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .p
 
 Basis plain() { return {"none", {}, {}, {}}; }
 
+const CausalFilterSettings kBlind{.branches = {.follow = false}};
+
 ModelAverage learned(const std::vector<Basis>& bases, const MotionModel& real, const Eigen::VectorXd& truth,
-                     const ModelAverageSettings& settings = {}) {
-  ModelAverage average("auto", bases, {}, {}, settings);
+                     const CausalFilterSettings& settings = {}) {
+  ModelAverage average("auto", bases, {}, settings, {});
   const auto drive = tests::simulate_drive(real, truth, {.seed = 81, .windows = 80, .window = 2.0, .noise = kNoise});
   for (const Segment& segment : drive.segments) {
     average.learn(drive.inputs, segment);
@@ -38,9 +40,7 @@ TEST_CASE("the weights sum to one and favour the model that is true") {
 
 TEST_CASE("a model that was wrong comes back when the terrain changes and nobody notices") {
   const MotionModel real(named_basis("edd-2"), {});
-  ModelAverageSettings blind;
-  blind.change.detect = false;
-  ModelAverage average = learned({plain(), named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4), blind);
+  ModelAverage average = learned({plain(), named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4), kBlind);
   CHECK(average.state().weights[0] < 0.05);
   const auto firm =
       tests::simulate_drive(real, Eigen::Vector2d::Zero(), {.seed = 82, .windows = 30, .window = 2.0, .noise = kNoise});
@@ -66,7 +66,7 @@ TEST_CASE("a segment is learned in pieces as it is at once, alarms included") {
       while (pieces.advance()) {
         ++count;
       }
-      CHECK(count >= 1 + bases.size());
+      CHECK(count >= bases.size());
       alarms += pieces.change().alarm ? 1 : 0;
       CHECK(pieces.update().nis == whole.update().nis);
       CHECK(pieces.state().estimate.mean == whole.state().estimate.mean);
@@ -132,10 +132,8 @@ TEST_CASE("reference speeds are the ninetieth percentile of those driven") {
 
 TEST_CASE("a change of terrain is found while driving, and learned faster than without") {
   const MotionModel real(named_basis("edd-2"), {});
-  ModelAverageSettings blind;
-  blind.change.detect = false;
   ModelAverage seeing("auto", {named_basis("edd-2")}, {}, {}, {});
-  ModelAverage unseeing("auto", {named_basis("edd-2")}, {}, {}, blind);
+  ModelAverage unseeing("auto", {named_basis("edd-2")}, {}, kBlind, {});
   int alarms = 0;
   for (const double slip : {-0.3, -0.6}) {
     const std::size_t windows = slip == -0.3 ? 80 : 20;

@@ -60,7 +60,7 @@ TEST_CASE("surfaces are as far apart as their segments would tell, in whichever 
   CHECK(far == doctest::Approx(average.apart(known[2], known[0], kWhiteSlip)).epsilon(0.05));
 }
 
-TEST_CASE("what was known at parting is without the segments that raised the suspicion") {
+TEST_CASE("what was known at parting is without the segments on another surface") {
   ModelAverage average = remembering_average();
   drive_on_surface(average, -0.1, 73, 20);
   const SurfaceMemory before = average.remember();

@@ -50,9 +50,7 @@ TEST_CASE("what is sealed but no learner is refused, however it ends") {
 TEST_CASE("branches go on from where they were saved, to the byte") {
   for (const bool from_commands : {false, true}) {
     CAPTURE(from_commands);
-    LearnerSettings settings = learner_settings(from_commands);
-    settings.hypotheses.average.change.detect = false;
-    settings.hypotheses.filter.branches.follow = true;
+    const LearnerSettings settings = learner_settings(from_commands);
     const Recording run = streamed_robot(8, 60.0);
     MotionLearner whole(settings);
     whole.start_run();

@@ -68,7 +68,7 @@ def surface_predictor(name: str, input_name: str, settings: Settings, windows: W
         offset,
         settings.sensor_extrinsics.learn,
         settings.filter_settings(),
-        settings.average_settings(),
+        _core.ModelAverageSettings(),
     )
     shape = settings.filter_settings().noise.shape
     rules = SurfaceRules(name, motion, settings.prior.slip_fraction, shape)

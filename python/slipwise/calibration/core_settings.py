@@ -65,7 +65,7 @@ def core_settings(  # noqa: PLR0913 - six things, each of its own sort
     tried = settings.auto.structures if settings.basis == "auto" else []
     hypotheses.cascaded, hypotheses.direct = "cascaded" in tried, "direct" in tried
     hypotheses.baseline = "baseline" in tried
-    hypotheses.filter, average = settings.filter_settings(), settings.average_settings()
+    hypotheses.filter, average = settings.filter_settings(), _core.ModelAverageSettings()
     if coming.positions:
         _change_prior(hypotheses, straight_side_slip_std=STRAIGHT_SIDE_SLIP)
     if remember and settings.body_force.learned:
@@ -77,7 +77,6 @@ def core_settings(  # noqa: PLR0913 - six things, each of its own sort
         surfaces = _core.SurfaceSettings()
         surfaces.remember = True
         average.surfaces = surfaces
-        _look_for_changes(hypotheses, average, settings)
     hypotheses.average = average
     if car is not None and from_commands:
         if coming.gyro_alone:
@@ -90,17 +89,6 @@ def core_settings(  # noqa: PLR0913 - six things, each of its own sort
     core.stream, core.hypotheses = stream, hypotheses
     core.learn_disturbance = settings.slip_disturbance.learn
     return core
-
-
-def _look_for_changes(
-    hypotheses: _core.HypothesisSettings, average: _core.ModelAverageSettings, settings: Settings
-) -> None:
-    """Let the detector say when a surface may be another, which branches do not."""
-    causal, branches, change = hypotheses.filter, _core.BranchSettings(), _core.ChangeSettings()
-    causal.branches = branches
-    hypotheses.filter = causal
-    change.detect = settings.change.detect
-    average.change = change
 
 
 def _behind_curves(hypotheses: _core.HypothesisSettings, settings: Settings) -> None:

@@ -54,7 +54,7 @@ GONE = {
     "slip_disturbance.learn": _CONSTANT,
     "body_force.time_constant": _CONSTANT,
     "body_force.std": _CONSTANT,
-    "change.detect": _CONSTANT,
+    "change.detect": "gone: slip that jumps is followed at any time",
     "change.branches": _CONSTANT,
     "smoothing.drift": _CONSTANT,
     "smoothing.length": _CONSTANT,

@@ -62,6 +62,7 @@ def learn_log(
     horizons: Sequence[float],
     *,
     keep: Keep | None = None,
+    embargo: float | None = None,
     progress: Progress | None = None,
 ) -> LearnedLog:
     """Push runs through a learner in one pass.
@@ -70,13 +71,16 @@ def learn_log(
         drive: the runs, in the order of time.
         settings: what to learn and how.
         horizons: of the predictions [s].
+        embargo: how old the parameters of predictions are at least [s]; None: one horizon.
         keep: what a model file and its report need beside predictions: the history, and limits.
         progress: called with the fraction done, 0 to 1.
 
     Raises:
         SettingsError: a basis or a term is unknown.
     """
-    learner = new_learner([run.run for run in drive], drive[0].input_name, settings, horizons)
+    learner = new_learner(
+        [run.run for run in drive], drive[0].input_name, settings, horizons, embargo=embargo
+    )
     return learn_with(learner, drive, horizons, keep=keep, progress=progress)
 
 
@@ -87,6 +91,7 @@ def new_learner(
     horizons: Sequence[float],
     *,
     remember: bool = False,
+    embargo: float | None = None,
 ) -> _core.MotionLearner:
     """Return a learner that knows nothing yet but what sort of vehicle and of poses the runs are of.
 
@@ -96,6 +101,7 @@ def new_learner(
         settings: what to learn and how.
         horizons: of the predictions [s].
         remember: keep surfaces that are driven on, and recall them.
+        embargo: how old the parameters of predictions are at least [s]; None: one horizon.
 
     Raises:
         SettingsError: a basis or a term is unknown.
@@ -109,6 +115,9 @@ def new_learner(
         car=car_prior(runs),
         wheelbase=None if car_prior(runs) is not None else wheelbase_of(runs),
     )
+    stream = core.stream  # a copy
+    stream.embargo = embargo
+    core.stream = stream
     return _core.MotionLearner(core)
 
 

@@ -92,6 +92,7 @@ class SequenceOptions:
     labels: tuple[str, ...] = ()  # of each log; without them, those of its column `terrain`
     terrain: Labels | None = None  # what sensors said of each run's surface, in place of both
     keep: Keep | None = None  # what a model file needs beside predictions
+    embargo: float | None = None  # s that parameters of predictions are old at least; None: one horizon
 
 
 _NOTHING = SequenceOptions()
@@ -121,7 +122,7 @@ def learn_sequence(
     """
     if options.terrain is not None:
         check_labels(options.terrain, drives)
-    learner = _begun(drives, settings, horizons, options.start)
+    learner = _begun(drives, settings, horizons, options)
     visited: list[VisitedLog] = []
     runs: tuple[PreparedRun, ...] = ()
     learned: list[_core.LearnerEvent] = []
@@ -149,6 +150,7 @@ def go_on(
     settings: Settings,
     horizons: Sequence[float],
     *,
+    embargo: float | None = None,
     progress: Progress | None = None,
 ) -> tuple[tuple[Predictions, ...], ...]:
     """Push logs through one learner without a memory of surfaces: what a memory has to beat.
@@ -157,6 +159,7 @@ def go_on(
         drives: the runs of each log, in the order of time.
         settings: what to learn and how.
         horizons: of the predictions [s].
+        embargo: how old the parameters of predictions are at least [s]; None: one horizon.
         progress: called with the fraction done, 0 to 1.
 
     Returns:
@@ -166,7 +169,9 @@ def go_on(
         SettingsError: a basis or a term is unknown.
     """
     runs = tuple(run for drive in drives for run in drive)
-    learner = new_learner([run.run for run in runs], runs[0].input_name, settings, horizons)
+    learner = new_learner(
+        [run.run for run in runs], runs[0].input_name, settings, horizons, embargo=embargo
+    )
     found = []
     for place, drive in enumerate(drives):
         columns, _ = _drive(learner, drive, horizons, (), partial(_share, progress, place, len(drives)))
@@ -203,13 +208,13 @@ def _begun(
     drives: Sequence[tuple[PreparedRun, ...]],
     settings: Settings,
     horizons: Sequence[float],
-    start: Model | None,
+    options: SequenceOptions,
 ) -> _core.MotionLearner:
     input_name = drives[0][0].input_name
     runs = [run.run for drive in drives for run in drive]
-    learner = new_learner(runs, input_name, settings, horizons, remember=True)
-    if start is not None:
-        begin_with(learner, start, input_name, wheels=any(has_wheels(drive) for drive in drives))
+    learner = new_learner(runs, input_name, settings, horizons, remember=True, embargo=options.embargo)
+    if options.start is not None:
+        begin_with(learner, options.start, input_name, wheels=any(has_wheels(drive) for drive in drives))
     return learner
 
 

@@ -158,10 +158,9 @@ class BodyForceTable(Section):
 
 
 class ChangeTable(Section):
-    """Finding a change of terrain: a change that is none costs a few seconds of learning."""
+    """Following a change of terrain."""
 
-    detect: bool = True
-    branches: bool = False  # in its place, filters compete in which slip jumped at any time
+    branches: bool = _core.BranchSettings().follow  # filters compete in which slip jumped at different times
 
 
 class SegmentTable(Section):

@@ -33,11 +33,18 @@ class Predictor:
     causal: bool = True  # False: it learned from the whole log, the windows to predict included
 
 
-def learned_counts(learned: WindowSet, targets: WindowSet) -> tuple[Ints, Ints]:
+def learned_counts(
+    learned: WindowSet, targets: WindowSet, embargo: float | None = None
+) -> tuple[Ints, Ints]:
     """Return how many windows count as learned for each target: after the embargo, and in-sample."""
-    embargoed = learned.count_until(targets.position, targets.start - targets.length)
+    embargoed = learned.count_until(targets.position, _known_until(targets, embargo))
     in_sample = learned.count_until(targets.position, targets.end)
     return embargoed, in_sample
+
+
+def _known_until(targets: WindowSet, embargo: float | None) -> Floats:
+    """Return up to when each prediction knows what was measured [s]: one horizon before, where none is given."""
+    return targets.start - (targets.length if embargo is None else embargo)
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +52,7 @@ class _Draft:
     """The predictions of one set of targets while they are being made, [N] each."""
 
     targets: WindowSet
+    embargo: float | None  # s
     counts: Ints  # windows learned before the prediction
     in_sample_counts: Ints
     pose: Floats
@@ -59,10 +67,13 @@ def predictions_of(predictor: Predictor, learned: WindowSet, targets: WindowSet)
 
 
 def predict_all(
-    predictor: Predictor, learned: WindowSet, sets: Sequence[WindowSet]
+    predictor: Predictor, learned: WindowSet, sets: Sequence[WindowSet], embargo: float | None = None
 ) -> tuple[Predictions, ...]:
-    """Predict the targets of several horizons in one run over the learned model, and keep no posterior."""
-    drafts = [_draft(learned, targets) for targets in sets]
+    """Predict the targets of several horizons in one run over the learned model, and keep no posterior.
+
+    What was measured within `embargo` [s] before a prediction does not count; None: within its horizon.
+    """
+    drafts = [_draft(learned, targets, embargo) for targets in sets]
     moments = [c for draft in drafts for c in (draft.counts, draft.in_sample_counts)]
     kind = np.repeat(np.arange(len(moments)), [len(counts) for counts in moments])
     index = np.concatenate([np.arange(len(counts)) for counts in moments])
@@ -76,11 +87,12 @@ def predict_all(
     return tuple(_finished(predictor, learned, draft) for draft in drafts)
 
 
-def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
-    counts, in_sample_counts = learned_counts(learned, targets)
+def _draft(learned: WindowSet, targets: WindowSet, embargo: float | None) -> _Draft:
+    counts, in_sample_counts = learned_counts(learned, targets, embargo)
     size = len(targets)
     return _Draft(
         targets,
+        embargo,
         counts,
         in_sample_counts,
         np.empty((size, 3)),
@@ -125,10 +137,10 @@ def _predict_in_sample(posterior: Posterior, draft: _Draft, i: int) -> None:
 
 
 def _finished(predictor: Predictor, learned: WindowSet, draft: _Draft) -> Predictions:
-    targets, known = draft.targets, known_windows(draft.targets)
+    targets, known = draft.targets, known_windows(draft.targets, draft.embargo)
     until = _learned_until(predictor, ((learned, draft.counts), (targets, known)), targets)
     proposed = ProposedPoses(draft.pose, draft.covariance, draft.in_sample, draft.structure)
-    return scored_predictions(predictor.method, targets, proposed, until)
+    return scored_predictions(predictor.method, targets, proposed, until, known)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,17 +153,24 @@ class ProposedPoses:
     structure: Ints  # of STRUCTURES
 
 
-def known_windows(targets: WindowSet) -> Ints:
-    """Return how many of the targets had ended one horizon before each began, [N]."""
-    return targets.count_until(targets.position, targets.start - targets.length)
+def known_windows(targets: WindowSet, embargo: float | None = None) -> Ints:
+    """Return how many of the targets had ended an embargo before each began, one horizon by default, [N]."""
+    return targets.count_until(targets.position, _known_until(targets, embargo))
 
 
 def scored_predictions(
-    method: str, targets: WindowSet, proposed: ProposedPoses, learned_until: Floats
+    method: str,
+    targets: WindowSet,
+    proposed: ProposedPoses,
+    learned_until: Floats,
+    known: Ints | None = None,
 ) -> Predictions:
-    """Return the predictions beside what was measured, with the tails that earlier errors show."""
+    """Return the predictions beside what was measured, with the tails that earlier errors show.
+
+    `known` is how many earlier errors those are; without it, those one horizon before.
+    """
     squared = normalised_squared(residual(targets.measured, proposed.pose), proposed.covariance)
-    students = _tails(known_windows(targets), squared)
+    students = _tails(known_windows(targets) if known is None else known, squared)
     inflation = np.array([tail.inflation for tail in students])
     left = residual(targets.measured, proposed.in_sample)
     return Predictions(

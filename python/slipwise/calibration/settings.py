@@ -129,18 +129,8 @@ class Settings(Section):
 
     def _branches(self) -> _core.BranchSettings:
         branches = _core.BranchSettings()
-        branches.follow = self.change.branches and not self.body_force.learned
+        branches.follow = self.change.branches
         return branches
-
-    def average_settings(self) -> _core.ModelAverageSettings:
-        """Return the core's settings of model averaging, and of finding a change of terrain.
-
-        Where a force is learned, sudden changes count as force, and no terrain is looked for.
-        """
-        settings, change = _core.ModelAverageSettings(), _core.ChangeSettings()
-        change.detect = self.change.detect and not (self.body_force.learned or self.change.branches)
-        settings.change = change
-        return settings
 
     def choosing(self, basis: str | None, estimator: str | None, body_force: str | None = None) -> Settings:
         """Return these settings with another basis or estimator, or a force in a frame, where one is given.

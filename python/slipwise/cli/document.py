@@ -88,6 +88,7 @@ def evaluation_part(evaluation: Evaluation) -> dict[str, Any]:
     return {
         "input": evaluation.input,
         "horizons": list(evaluation.horizons),
+        "embargo": evaluation.embargo,
         "methods": list(evaluation.methods),
         "scores": [asdict(score) for score in evaluation.scores],
     }

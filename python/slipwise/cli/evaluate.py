@@ -45,6 +45,14 @@ def evaluate(
     horizons: Annotated[
         str, typer.Option(metavar="SECONDS", help="How far ahead, separated by commas.")
     ] = "1,2,5",
+    embargo: Annotated[
+        float | None,
+        optional(
+            "SECONDS",
+            "Nothing measured within so many seconds before a prediction is learned for it; 0: the newest "
+            "parameters, as a live node has them. Default: the horizon.",
+        ),
+    ] = None,
     methods: Annotated[
         str | None,
         optional(
@@ -112,7 +120,7 @@ def evaluate(
     out = Output(json)
     chosen = chosen_settings(settings, changes, basis)
     options, models = (
-        _options(horizons, methods, vendor_wheel_separation_multiplier, model or []),
+        _options(horizons, embargo, methods, vendor_wheel_separation_multiplier, model or []),
         model or [],
     )
     read = (*logs, *log_options.files, *models, settings, *label_files(surface))
@@ -153,7 +161,11 @@ def evaluate(
 
 
 def _options(
-    horizons: str, methods: str | None, multiplier: float | None, models: Sequence[Path]
+    horizons: str,
+    embargo: float | None,
+    methods: str | None,
+    multiplier: float | None,
+    models: Sequence[Path],
 ) -> EvaluationOptions:
     from slipwise.cli.model_names import named_models
     from slipwise.errors import SettingsError
@@ -168,7 +180,7 @@ def _options(
     names = None
     if methods is not None:
         names = tuple(dict.fromkeys(["none", *(part.strip() for part in methods.split(",") if part.strip())]))
-    return EvaluationOptions(seconds, names, multiplier, named_models(models))
+    return EvaluationOptions(seconds, names, multiplier, named_models(models), embargo=embargo)
 
 
 def _next_step(evaluation: Evaluation, verdict: Verdict | None, models: Sequence[Path]) -> tuple[str, ...]:

@@ -166,11 +166,13 @@ def show_memory_changes(output: Output, names: Sequence[str], learned: LearnedSe
 
 def show_scores(output: Output, evaluation: Evaluation) -> None:
     """Show one table per horizon: errors, ratios, the in-sample residual and how honest the covariance is."""
+    from slipwise.evaluation.result import embargo_sentence
+
     for horizon in evaluation.horizons:
         scores = [score for score in evaluation.scores if score.horizon == horizon]
         title = f"After {horizon:g} s, from {evaluation.input}s ({scores[0].windows} held-out segments)"
         output.table(title, _SCORE_COLUMNS, [_score_row(score) for score in scores])
-    output.line(_LEGEND)
+    output.line(f"{_LEGEND} {embargo_sentence(evaluation.embargo)}")
     if any(not score.causal for score in evaluation.scores):
         output.line("† not causal: it has learned from the very segments it is judged on.")
 

@@ -30,6 +30,7 @@ from slipwise.models.common_input import of_common_input
 from slipwise.models.model import Model
 
 DEFAULT_HORIZONS = (1.0, 2.0, 5.0)  # s
+LONGEST_EMBARGO = 3600.0  # s
 SHORTEST_HORIZON = 0.5  # s; what is driven in less is hardly more than the noise of the poses
 Report = Callable[[str, float], None]
 
@@ -44,6 +45,7 @@ class EvaluationOptions:
     model: Model | Mapping[str, Model] | None = None  # model files as they are: `model`, or several by name
     # What a calibration of this log with these settings predicted, by method: not learned a second time.
     made: Mapping[str, tuple[Predictions, ...]] = field(default_factory=dict)
+    embargo: float | None = None  # s before a prediction from which nothing is learned; None: one horizon
     memory: SequenceOptions | None = None  # what a sequence of logs begins with, and labels of them
 
     @property
@@ -96,6 +98,7 @@ def evaluate(
         ),
         models=tuple(models),
         positions=has_course(log.runs),
+        embargo=options.embargo,
         clocks_compared=log.clocks_compared,
     )
 
@@ -134,10 +137,14 @@ def contest_of(
 
     Raises:
         LogError: the log has no such input, no poses, or no window of any horizon.
-        SettingsError: a horizon is wrong.
+        SettingsError: a horizon or the embargo is wrong.
     """
     if not options.horizons or any(not (np.isfinite(h) and h > 0.0) for h in options.horizons):
         raise SettingsError("horizons must be positive seconds", where="--horizons", advice="such as 1,2,5")
+    if options.embargo is not None and not 0.0 <= options.embargo <= LONGEST_EMBARGO:
+        raise SettingsError(
+            f"an embargo lasts from 0 to {LONGEST_EMBARGO:g} s", where="--embargo", advice="such as 0"
+        )
     drive = prepare_run(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
@@ -163,6 +170,7 @@ def contest_of(
         options.vendor_wheel_separation_multiplier,
         options.models,
         learned_from_this,
+        options.embargo,
     )
     return contest, notes
 

@@ -31,6 +31,7 @@ class Contest:
     vendor_wheel_separation_multiplier: float | None = None
     models: Mapping[str, Model] = field(default_factory=dict)  # model files as they are, by method
     learned_from_this: frozenset[str] = frozenset()  # those of them that were learned from this very log
+    embargo: float | None = None  # s before a prediction from which nothing is learned; None: one horizon
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,7 @@ def by(make: Callable[[str, Contest], Predictor]) -> Callable[[str, Contest], tu
     """Predict with what `make` returns."""
 
     def predict(name: str, contest: Contest) -> tuple[Predictions, ...]:
-        return predict_all(make(name, contest), contest.windows, contest.targets)
+        return predict_all(make(name, contest), contest.windows, contest.targets, contest.embargo)
 
     return predict
 
@@ -127,7 +128,7 @@ def learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
     """Push the log through a learner with the basis `name`, which predicts on the way."""
     settings = contest.settings.model_copy(update={"basis": name, "estimator": AVERAGE})
     horizons = [targets.length for targets in contest.targets]
-    learned = learn_log(contest.windows.drive, settings, horizons)
+    learned = learn_log(contest.windows.drive, settings, horizons, embargo=contest.embargo)
     return tuple(replace(predictions, method=name) for predictions in learned.predictions)
 
 
@@ -154,9 +155,10 @@ def _plain(_: str, contest: Contest) -> tuple[Predictions, ...]:
     """Predict by the input alone; throttle and steering by a bicycle with the best constant gains so far."""
     drive = contest.windows.drive
     if drive[0].input_name == "wheel" or car_prior([run.run for run in drive]) is None:
-        return predict_all(baseline_predictor(contest.settings), contest.windows, contest.targets)
+        predictor = baseline_predictor(contest.settings)
+        return predict_all(predictor, contest.windows, contest.targets, contest.embargo)
     horizons = [targets.length for targets in contest.targets]
-    return learn_log(drive, contest.settings, horizons).baseline
+    return learn_log(drive, contest.settings, horizons, embargo=contest.embargo).baseline
 
 
 def _estimator(name: str, contest: Contest) -> Predictor:
@@ -186,4 +188,4 @@ def _model(name: str, contest: Contest) -> tuple[Predictions, ...]:
         )
     model, causal = contest.models[name], name not in contest.learned_from_this
     predictor = replace(model_predictor(model), method=name, causal=causal)
-    return predict_all(predictor, contest.windows, _driven_by(model, contest))
+    return predict_all(predictor, contest.windows, _driven_by(model, contest), contest.embargo)

@@ -58,6 +58,12 @@ class Score:
         return row
 
 
+def embargo_sentence(embargo: float | None) -> str:
+    """Say how old what predictions were made from is."""
+    age = "one horizon" if embargo is None else f"{embargo:g} s"
+    return f"Nothing measured within {age} before a prediction was learned for it."
+
+
 def _parts(name: str) -> tuple[str, ...]:
     """What the numbers of a tuple in a score are."""
     if name.endswith("coverage"):
@@ -91,6 +97,7 @@ class Evaluation:
     models: tuple[str, ...] = ()  # those of the methods that are model files as they are
     contradictions: tuple[Finding, ...] = ()  # between the poses and the inputs of the log
     positions: bool = False  # only positions were measured
+    embargo: float | None = None  # s before a prediction from which nothing was learned; None: its horizon
     clocks_compared: bool = False  # header stamps were compared with the times of receipt
 
     def __repr__(self) -> str:

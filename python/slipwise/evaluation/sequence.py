@@ -130,11 +130,17 @@ def evaluate_sequence(
     chosen = remembering if memory.start else for_the_ground_of(logs[0][1], remembering)
     said = progress or _nobody
     learned = learn_sequence(
-        drives, chosen, horizons, options=memory, progress=lambda done: said("memory", done)
+        drives,
+        chosen,
+        horizons,
+        options=replace(memory, embargo=options.embargo),
+        progress=lambda done: said("memory", done),
     )
     went_on: tuple[tuple[Predictions, ...], ...] = ()
     if memory.start is None:
-        went_on = go_on(drives, chosen, horizons, progress=lambda done: said("going on", done))
+        went_on = go_on(
+            drives, chosen, horizons, embargo=options.embargo, progress=lambda done: said("going on", done)
+        )
     evaluations = []
     for (_, log), visited in zip(logs, learned.logs, strict=True):
         made = {REMEMBERING: visited.predictions}

@@ -121,11 +121,13 @@ def _sensor(contents: Contents) -> tuple[float, float, float]:
 
 
 def _known_parameters(contents: Contents, window: ChosenWindow) -> Floats | None:
-    """Return the parameters learned until one horizon before the start, None where that is not recorded."""
+    """Return the parameters learned until an embargo before the start, None where that is not recorded."""
     history, model = contents.calibration.history, contents.calibration.model
     if history is None or list(history.names) != model.vector.names:
         return None
-    until = window.t_start - (contents.longest_horizon or 0.0) + _core.SAME_STAMP
+    embargo = contents.evaluation.embargo
+    before = (contents.longest_horizon or 0.0) if embargo is None else embargo
+    until = window.t_start - before + _core.SAME_STAMP
     learned = np.flatnonzero(
         (history.run < window.run) | ((history.run == window.run) & (history.t <= until))
     )

@@ -44,9 +44,6 @@ def test_bases_that_are_chosen_are_those_of_a_car_too(bases: list[str]) -> None:
     assert 0 < len(fewer) < len(default.bases())
 
 
-def test_detector_looks_for_changes_where_surfaces_are_remembered_and_branches_elsewhere() -> None:
-    settings = Settings.model_validate({"change": {"branches": True}})
+def test_branches_follow_changes_whether_surfaces_are_remembered_or_not() -> None:
     for remember in (False, True):
-        hypotheses = core_settings(settings, "wheel", (1.0,), remember=remember).hypotheses
-        assert hypotheses.filter.branches.follow is not remember
-        assert hypotheses.average.change.detect is remember
+        assert core_settings(Settings(), "wheel", (1.0,), remember=remember).hypotheses.filter.branches.follow

@@ -60,8 +60,7 @@ structures = ["joint", "direct"]
 learn = false
 
 [change]
-detect = false
-branches = true
+branches = false
 
 [smoothing]
 smooth = true
@@ -153,9 +152,8 @@ def test_every_key_and_constant_is_accepted_and_reaches_its_place() -> None:
     assert log.command_timeout == 0.6
     drift = settings.smoothing.drift_settings()
     assert (drift.drift, drift.length) == (_core.Drift.RandomWalk, 20.0)
-    assert not settings.average_settings().change.detect
-    assert settings.filter_settings().branches.follow
-    assert not Settings().filter_settings().branches.follow
+    assert not settings.filter_settings().branches.follow
+    assert Settings().filter_settings().branches.follow
     learner = core_settings(settings, "command", (1.0, 4.0))
     assert not learner.learn_disturbance
     assert (learner.stream.from_commands, learner.stream.segment_length) == (True, 1.5)
@@ -241,8 +239,7 @@ def test_defaults_are_those_of_the_core() -> None:
         assert {name: getattr(one, name) for name in names} == {name: getattr(other, name) for name in names}
     for prior in (ours.prior, core.prior):
         assert not prior.sensor.vector().any()
-    for name in ("detect", "threshold", "fraction", "forget"):
-        assert getattr(settings.average_settings().change, name) == getattr(_core.ChangeSettings(), name)
+    assert ours.branches.follow is core.branches.follow
     assert settings.rules() == WindowRules()
     assert load_settings_of_nothing() == settings
 

@@ -61,13 +61,13 @@ def test_step_is_told_sooner_where_wheels_are_beside_the_commands(changing: Log)
     assert found["with wheels"] < found["alone"] <= CHANGE + 10.0
 
 
-def test_step_is_learned_sooner_for_having_been_found(changing: Log) -> None:
+def test_step_is_learned_sooner_by_branches(changing: Log) -> None:
     learned = {}
-    for detect in (True, False):
-        settings = make_settings({"basis": "edd-2", "change": {"detect": detect}})
+    for branches in (True, False):
+        settings = make_settings({"basis": "edd-2", "change": {"branches": branches}})
         history = calibrate(changing, input="wheel", settings=settings).history
         assert history is not None
-        learned[detect] = history.mean[history.t <= CHANGE + 12.0, history.names.index("ang.w")][-1]
+        learned[branches] = history.mean[history.t <= CHANGE + 12.0, history.names.index("ang.w")][-1]
     assert learned[True] < learned[False] - 0.05
 
 

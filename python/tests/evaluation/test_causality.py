@@ -205,6 +205,22 @@ def test_file_cut_off_gives_the_same_predictions_as_the_whole_file(
             same(by_name(whole)[key], i, here, i)
 
 
+@pytest.mark.parametrize("embargo", [0.0, 10.0])
+def test_embargo_is_the_one_that_is_asked_for(embargo: float) -> None:
+    settings = make_settings({"slip_disturbance": {"learn": False}})
+    options = replace(OPTIONS, horizons=(5.0,), embargo=embargo)
+    result = evaluate(simulated(), input="wheel", options=options, settings=settings)
+    assert result.embargo == embargo
+    for p in result.predictions:
+        begin = np.array([simulated().runs[run].poses.t[0] for run in p.run])
+        assert (p.learned_until <= np.maximum(begin, p.t_start - embargo) + 1e-6).all()
+        if p.method != "none":
+            assert (p.t_start - p.learned_until < embargo + 3.5).sum() > 0.5 * len(p)
+    options = replace(options, embargo=None)
+    usual = by_name(evaluate(simulated(), input="wheel", options=options, settings=settings))
+    assert not np.array_equal(by_name(result)["auto", 5.0].pose, usual["auto", 5.0].pose)
+
+
 def test_embargo_holds_across_runs_that_follow_each_other_on_one_clock() -> None:
     log = simulated()
     options = EvaluationOptions(methods=("auto",), horizons=(5.0,))

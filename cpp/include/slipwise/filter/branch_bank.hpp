@@ -17,6 +17,14 @@ namespace slipwise {
 struct Branch {
   Estimate estimate;
   std::size_t number;  ///< in the order of births
+  std::size_t born;    ///< segments that were learned until then
+};
+
+/// Whether slip jumped since the terrain counted as changed last, or the start.
+struct SlipChange {
+  double log_odds = 0.0;  ///< that it did; 0 where branches speak against it
+  int segments = 0;       ///< since the likeliest jump, where they speak for one
+  bool alarm = false;     ///< from this segment on, the terrain counts as changed
 };
 
 /// Slip of one direction: its terms, and how far each jumps where the main one jumps by 1.
@@ -55,14 +63,13 @@ class BranchBank {
   const Estimate& leader() const { return branches_[branches_.heaviest()].estimate; }
   /// Whether with the last segment another branch came to hold more than half of the weight.
   bool leader_changed() const { return leader_changed_; }
-  /// Log odds that slip jumped since the last change, or the start; 0 where they speak against it.
-  double change_odds() const { return change_odds_; }
-  /// Whether with the last segment these odds came to be large, or have been even for so long, that the terrain counts
-  /// as changed.
-  bool changed() const { return changed_; }
+  /// The terrain counts as changed where the odds of a jump are large, or have been even for long.
+  const SlipChange& change() const { return change_; }
 
   /// Nothing but this is known.
   void restart(const Estimate& known);
+  /// Slip jumped just now, with this probability.
+  void expect_jump(const Estimate& prior, const Eigen::VectorXd& unit, double probability);
   /// What the branch knows that led last is known better, if it is still there.
   void correct_leader(const Estimate& better);
   /// The same data under another prior of slip; false if that of the heaviest branch cannot be changed. Others stay
@@ -80,19 +87,20 @@ class BranchBank {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.kinds_, self.settings_, self.branches_, self.births_, self.segments_, self.led_by_, self.known_);
-    a(self.held_, self.change_odds_, self.leader_changed_, self.changed_);
+    a(self.held_, self.change_, self.leader_changed_);
   }
 
  private:
   static constexpr std::size_t kHeld = 10;  // segments until branches count as another terrain
 
-  void bear(const BranchSegment& driven, double motion);
+  void bear(const Estimate& prior, const Eigen::VectorXd& unit, double hazard);
   void weigh(const SegmentLinearization& at, const Eigen::VectorXd& mean, const Rows& innovation,
              const RowsCovariance& noise, double alike);
   void prune();
   IekfUpdate update_all(const MotionModel& model, const BranchSegment& driven, SegmentLinearization at,
                         const RowsCovariance& noise, const IekfSettings& settings);
   void follow_leader();
+  SlipChange look_for_change();
 
   std::vector<JumpKind> kinds_;
   BranchSettings settings_;
@@ -102,9 +110,8 @@ class BranchBank {
   std::size_t led_by_ = 0;    ///< number of the branch that held more than half of the weight last
   std::size_t known_ = 0;     ///< births until the terrain counted as changed
   std::size_t held_ = 0;      ///< segments for which branches that were born since have more than half of the weight
-  double change_odds_ = 0.0;
+  SlipChange change_;
   bool leader_changed_ = false;
-  bool changed_ = false;
 };
 
 }  // namespace slipwise

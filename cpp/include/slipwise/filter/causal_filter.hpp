@@ -48,6 +48,10 @@ class CausalFilter {
   /// the robot's, not the terrain's: they stay as learned.
   void forget(double fraction);
 
+  /// Something says that the terrain may have changed just now: slip may have jumped, and where none may jump it is
+  /// less sure.
+  void expect_change();
+
   /// The estimate of the surface that is driven on, apart from the robot.
   SurfaceSlip surface() const;
   /// Goes on with the slip of a surface; what is the robot's stays as learned. `drift` of its prior variance is added:
@@ -86,6 +90,7 @@ class CausalFilter {
  private:
   void follow(const ReferenceSpeeds& speeds);
   Estimate prior(const ReferenceSpeeds& speeds) const;
+  Eigen::VectorXd unit() const;
   void pass(const Segment& segment);
   void keep(const InputHistory& inputs, const Segment& segment);
   void end_refit();

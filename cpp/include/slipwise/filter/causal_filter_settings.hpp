@@ -11,7 +11,7 @@ namespace slipwise {
 
 /// Slip that may jump (`BranchBank`).
 struct BranchSettings {
-  bool follow = false;
+  bool follow = true;
 };
 
 struct CausalFilterSettings {

@@ -48,11 +48,12 @@ class CascadedModel {
   /// What was joined last.
   const std::shared_ptr<const MotionPosterior>& posterior() const { return posterior_; }
   /// The strongest test for a change of terrain since the last `refresh`.
-  const ChangeTest& change() const { return change_; }
+  const SlipChange& change() const { return change_; }
   /// Whether a refit of the slip took effect since the last `refresh` but one.
   bool refitted() const { return refitted_; }
   /// Gives the slip parameters `fraction` of their prior variance back.
   void forget(double fraction) { slip_.forget(fraction); }
+  void expect_change() { slip_.expect_change(); }
   /// What learns the slip.
   ModelAverage& slip() { return slip_; }
   const ModelAverage& slip() const { return slip_; }
@@ -76,8 +77,8 @@ class CascadedModel {
   PredictiveScore score_;
   std::vector<Eigen::Index> places_of_slip_;  ///< of its parameters among the model's
   std::vector<Eigen::Index> places_of_actuator_;
-  ChangeTest change_;
-  ChangeTest change_since_;
+  SlipChange change_;
+  SlipChange change_since_;
   bool refitted_ = false;
   bool refitted_since_ = false;
   std::shared_ptr<const MotionPosterior> posterior_;

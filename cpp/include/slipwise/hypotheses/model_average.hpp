@@ -9,12 +9,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slipwise/filter/causal_filter.hpp"
 #include "slipwise/filter/driven_speeds.hpp"
 #include "slipwise/filter/hypothesis_bank.hpp"
-#include "slipwise/hypotheses/change_detector.hpp"
 #include "slipwise/hypotheses/surface_memory.hpp"
 
 namespace slipwise {
@@ -22,7 +22,6 @@ namespace slipwise {
 struct ModelAverageSettings {
   WeightingSettings weighting = {};
   double largest_basis = 0.4;  ///< prior weight of the basis with the most terms: of all, it is best most often [-]
-  ChangeSettings change = {};
   SurfaceSettings surfaces = {};
 };
 
@@ -50,14 +49,13 @@ class ModelAverage {
   ModelAverage& operator=(ModelAverage&&) noexcept;
   ~ModelAverage();
 
-  /// Learns one segment with every model, after a test whether the terrain changed. Returns the update of the model
-  /// that weighted most before.
+  /// Learns one segment with every model. Returns the update of the model that weighted most before.
   IekfUpdate learn(const InputHistory& inputs, const Segment& segment);
 
   /// The same in pieces: takes the segment, which `advance` then learns. The rest of the one before is learned now.
   void start(const InputHistory& inputs, const Segment& segment);
 
-  /// One bounded piece: the test for a change, or the update of one filter. False when the segment is learned.
+  /// One bounded piece: the update of one filter. False when the segment is learned.
   bool advance();
   /// Of the last segment that was learned: the update of the model that weighted most before.
   const IekfUpdate& update() const { return update_; }
@@ -69,6 +67,8 @@ class ModelAverage {
 
   /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
   void forget(double fraction);
+  /// Something says that the terrain may have changed just now.
+  void expect_change();
 
   /// The estimate of the surface that is driven on, or of the likeliest.
   SurfaceMemory remember() const;
@@ -83,16 +83,12 @@ class ModelAverage {
   const std::optional<SurfaceTrial>& trial() const { return trial_; }
   /// Takes one of the candidates: learning goes on from its posterior.
   void settle(std::size_t candidate);
-  /// The estimate of the surface before the last trial, without its suspicious last segments.
+  /// The estimate of the surface before the last trial, without its last segments that were on another.
   const std::optional<SurfaceMemory>& parting() const { return parting_; }
-  /// Of a suspicion, what was known before the segments that raised it.
+  /// What was known before the segments from `since` [s] on.
   void mark_parting(double since);
-  /// Whether a suspicion is only reported; the owner of other surfaces opens the trial.
-  void hand_over(bool suspicions) { handed_over_ = suspicions; }
-  /// Start of the segments that the last suspicion is about [s].
-  double suspected_since() const { return suspected_since_; }
-  /// Whether the last segment ended a trial of its own in favour of the models that forgot.
-  bool moved() const { return moved_; }
+  /// Start of the segments since a change of terrain [s], where one was found since the last call.
+  std::optional<double> take_change() { return std::exchange(changed_since_, std::nullopt); }
   /// Forgets which segments were the last: another run begins.
   void start_run() { recent_.clear(); }
   /// Log odds that a trial would give one of two surfaces against the other, were it the one and driven as of late.
@@ -110,8 +106,8 @@ class ModelAverage {
 
   const MotionModel& model() const { return model_; }
   AverageState state() const;
-  /// The test of the last segment for a change of terrain.
-  const ChangeTest& change() const { return change_; }
+  /// Whether slip jumped before the last segment or one of those just before it, as the model says that weighted most.
+  const SlipChange& change() const { return change_; }
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
   /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
@@ -123,9 +119,8 @@ class ModelAverage {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.filters_, self.places_, self.settings_, self.speeds_, self.changing_, self.before_);
-    a(self.detector_, self.change_, self.learning_, self.update_, self.undecided_, self.announced_);
-    a(self.recent_, self.probes_, self.trial_, self.parting_, self.handed_over_, self.suspected_since_, self.moved_);
+    a(self.model_, self.filters_, self.places_, self.settings_, self.speeds_, self.change_, self.learning_);
+    a(self.update_, self.recent_, self.probes_, self.trial_, self.parting_, self.changed_since_);
     self.check_sizes();
   }
 
@@ -134,7 +129,6 @@ class ModelAverage {
   struct Learning {
     InputHistory inputs;
     Segment segment;
-    bool tested = false;
     std::vector<IekfUpdate> updates = {};
   };
 
@@ -154,17 +148,14 @@ class ModelAverage {
 
   /// \throws std::invalid_argument unless there are as many filters and places as bases and candidates.
   void check_sizes() const;
-  void look_for_change();
   void update_next_filter();
   void reweigh();
-  ChangeTest test_for_change(const InputHistory& inputs, const Segment& segment);
-  void branch();
-  void resolve();
+  void look_for_change();
   std::vector<std::size_t> side_places(std::size_t side) const;
   Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
   AverageState state_of(std::span<const CausalFilter> filters, const Eigen::VectorXd& weights) const;
-  std::size_t sides() const { return trial_ ? trial_->candidates.size() : (undecided_ > 0 ? 2 : 1); }
+  std::size_t sides() const { return trial_ ? trial_->candidates.size() : 1; }
   void note_recent();
   std::size_t recent_since(double since) const;
   HypothesisBank<CausalFilter> filters_on(const SurfaceMemory& surface, double drift) const;
@@ -176,25 +167,18 @@ class ModelAverage {
   SurfacePosterior posterior_of(const AverageState& state) const;
 
   MotionModel model_;
-  HypothesisBank<CausalFilter> filters_;           ///< one per basis; after an alarm also those that had none
+  HypothesisBank<CausalFilter> filters_;           ///< one per basis, in a trial for each of its candidates
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
   DrivenSpeeds speeds_;
-  std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of terrain is looked for
-  std::deque<AverageState> before_;     ///< before each of the last segments
-  ChangeDetector detector_;
-  ChangeTest change_;
+  SlipChange change_;
   std::optional<Learning> learning_;
   IekfUpdate update_ = {};
-  int undecided_ = 0;          ///< segments until the models that forgot have to have proved better
-  bool announced_ = false;     ///< whether the test itself raised an alarm for them
   std::deque<Recent> recent_;  ///< the last segments of the run, where surfaces are remembered
   std::deque<Recent> probes_;  ///< some of those before, by which surfaces are compared
   std::optional<SurfaceTrial> trial_;
   std::optional<SurfaceMemory> parting_;
-  bool handed_over_ = false;
-  double suspected_since_ = 0.0;
-  bool moved_ = false;
+  std::optional<double> changed_since_;  ///< [s], of a change that nobody took
 };
 
 }  // namespace slipwise

@@ -67,7 +67,7 @@ struct KnownBefore {
 struct StructureUpdate {
   double nis = 0.0;     ///< of the segment before it was learned
   double weight = 1.0;  ///< how much it counted: 0 rejected
-  ChangeTest change = {};
+  SlipChange change = {};
   bool refitted = false;  ///< whether a refit of its filters took effect
 };
 
@@ -92,6 +92,8 @@ class MotionHypotheses {
   bool refit_slice();
   /// Gives all slip parameters `fraction` of their prior variance back: another sensor says that the terrain changed.
   void forget(double fraction);
+  /// Something says that the terrain may have changed just now.
+  void expect_change();
   /// Another drive begins: on a surface that is remembered, or a new one. `law` is the slip disturbance as it is known.
   void start_drive(const DisturbanceModel& law, const DriveStart& start);
   /// The surface changes now by a label, to the one of this name if any.

@@ -69,7 +69,7 @@ class SurfaceBank {
   /// A sensor says what the terrain under the robot is. In a trial all that it said counts as one cue, since answers
   /// miss alike; where another surface explains it far better than the present one, a trial begins.
   void hear(const Averages& averages, const DisturbanceModel& law, const TerrainAnswer& answer);
-  /// After each segment that the average `leader` learned: its suspicions open trials, and its evidence ends them.
+  /// After each segment that the average `leader` learned: its changes open trials, and its evidence ends them.
   /// Whether any average goes on from another posterior.
   bool consider(const Averages& averages, std::size_t leader, const DisturbanceModel& law);
   /// Counts a segment that was driven on the present surface.

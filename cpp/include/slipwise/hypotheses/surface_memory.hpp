@@ -22,11 +22,11 @@ struct SurfaceSettings {
   int soonest = 2;             ///< segments that speak before a surface is taken, at least: one may be an outlier
   int trial = 60;              ///< segments after which the likeliest surface is taken, however close it is
   int fewest = 20;             ///< segments of a surface that is kept, or compared with others
-  double changed = 0.2;        ///< prior probability that a suspicion is another surface, not a passing disturbance [-]
-  double unknown = 0.2;        ///< prior probability that the surface of a drive's start was never driven [-]
-  bool merge = true;           ///< surfaces that cannot be distinguished become one:
-  double alike = 600.0;        ///< in so many segments
-  std::size_t most = 12;       ///< surfaces that are kept; the least used one goes
+  double changed = 0.2;   ///< prior probability that a jump of slip is another surface, not a passing disturbance [-]
+  double unknown = 0.2;   ///< prior probability that the surface of a drive's start was never driven [-]
+  bool merge = true;      ///< surfaces that cannot be distinguished become one:
+  double alike = 600.0;   ///< in so many segments
+  std::size_t most = 12;  ///< surfaces that are kept; the least used one goes
 };
 
 /// One model average's memory of a surface.

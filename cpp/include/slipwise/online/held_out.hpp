@@ -110,8 +110,9 @@ class HorizonErrors {
   HorizonErrors();
   /// What was known of errors at `t` [s].
   const Known& before(double t) const;
-  /// Takes in an error that was known at `end` [s], by its squared lengths with and without recent segments.
-  void learn(double end, Structure structure, double squared, double nominal_squared);
+  /// Takes in an error that was known at `end` [s], by its squared lengths with and without recent segments. What was
+  /// known `age` [s] before is asked for yet.
+  void learn(double end, Structure structure, double squared, double nominal_squared, double age = 0.0);
   /// The Student t without recent segments, from all errors.
   StudentT nominal(Structure structure) const;
   /// Stamps begin again: all errors so far are known.
@@ -141,8 +142,8 @@ class HeldOutErrors {
   StudentT student(double t, double horizon, Structure structure) const;
   /// Of one horizon, nothing recent being known, for each of them.
   std::vector<StudentT> nominal(Structure structure) const;
-  /// What was known of the errors of one of the horizons when a prediction from `start` [s] on was made.
-  const HorizonErrors::Known& before(std::size_t horizon, double start) const;
+  /// What was known of the errors of one of the horizons at `t` [s].
+  const HorizonErrors::Known& before(std::size_t horizon, double t) const { return errors_[horizon].before(t); }
   HorizonErrors& of(std::size_t horizon) { return errors_[horizon]; }
   void keep(std::shared_ptr<const HeldOutPrediction> prediction);
   const std::vector<HeldOutPredictions>& predictions() const { return predictions_; }

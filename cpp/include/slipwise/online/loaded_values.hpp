@@ -34,7 +34,6 @@ struct LoadedValues {
   static void check(Type<MeasuredTilts> type, const MeasuredTilts& value);
   static void check(Type<MappedGround> type, const MappedGround& value);
   static void check(Type<KnotCurve> type, const KnotCurve& value);
-  static void check(Type<ChangeSettings> type, const ChangeSettings& value);
   static void check(Type<StreamSettings> type, const StreamSettings& value);
 };
 

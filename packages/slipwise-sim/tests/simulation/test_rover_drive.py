@@ -65,7 +65,7 @@ def test_slip_is_recovered_within_three_sigma(rover: Rover, stones: int, basis: 
         ground = RoughGround(stones, height=0.05, seed=seed)
         drive = drive_rover(rover, rover_commands(rover, 45.0, seed), ground)
         truth = true_slip(drive, _core.named_basis(basis))
-        settings = make_settings({"basis": basis, "change": {"detect": False}})
+        settings = make_settings({"basis": basis, "change": {"branches": False}})
         model = sw.calibrate(drive.log(seed=seed), input="wheel", settings=settings).model
         assert model["lon.V"].value < -0.045
         for name, true in truth.items():

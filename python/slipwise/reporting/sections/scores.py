@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from slipwise.evaluation.result import ErrorSummary, Score
+from slipwise.evaluation.result import ErrorSummary, Score, embargo_sentence
 from slipwise.number_text import DASH
 from slipwise.reporting.contents import MAIN_METHODS, Contents
 from slipwise.reporting.markup import details, escape, missing, number, paragraph, scrolling
@@ -47,8 +47,10 @@ class ScoresSection:
         shown = list(dict.fromkeys(main)) or present
         others = [name for name in present if name not in shown]
         folded = f"All figures{f', and {len(others)} other methods' if others else ''}"
-        return _main_table(contents, shown) + details(
-            folded, _full_table(contents, [*shown, *others]) + _notes()
+        return (
+            _main_table(contents, shown)
+            + paragraph(embargo_sentence(contents.evaluation.embargo))
+            + details(folded, _full_table(contents, [*shown, *others]) + _notes())
         )
 
 
