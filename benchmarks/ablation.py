@@ -48,8 +48,8 @@ FOOTNOTE = (
     "Lines are those of a mechanism's own files and, in shared ones, those that name it; rows overlap. "
     f"*: gains under {GAIN:g} % of either error, from either input, at more than {LINES} lines. "
     "What no setting switches off - refits, correlated scores - is switched off by its constants, in a build "
-    "of its own. Correlated scores are for the covariance of parameters (promises/covariance.py), the change "
-    "detector for new terrain (promises/terrain_change.py). Gating of poses cannot be switched off."
+    "of its own. Correlated scores are for the covariance of parameters (promises/covariance.py), branches "
+    "for new terrain (following.py). Gating of poses cannot be switched off."
 )
 
 

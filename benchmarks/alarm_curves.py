@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """How soon changes of ground are found, and how often one is where there is none, beside other finders.
 
-One learner runs over each drive and takes no notice of changes; all finders see what it says of each
-window before it learns it. Drives are simulated (steps of slip, from wheel speeds and from commands, with
-white slip noise and with slip noise that lasts for seconds), and real: grounds of the Warthog's window sets
-one after the other. Finders are run at every setting;
-of the settings with as few false alarms the one that is soonest counts. ruptures looks at whole drives: its
-delay is how far its nearest change lies from the true one.
+One learner runs over each drive and takes no notice of changes; all finders but slipwise's own see what it
+says of each window before it learns it. Slipwise's are the log odds of a learner whose slip may jump. Drives
+are simulated (steps of slip, from wheel speeds and from commands, with white slip noise and with slip noise
+that lasts for seconds), and real: grounds of the Warthog's window sets one after the other. Finders are run
+at every setting; of the settings with as few false alarms the one that is soonest counts. ruptures looks at
+whole drives: its delay is how far its nearest change lies from the true one.
 """
 
 from __future__ import annotations
@@ -37,7 +37,6 @@ from slipwise_thesis.estimators import learned_parts
 Floats = NDArray[np.float64]
 
 MINUTES = 4.0  # of a simulated drive on either ground
-NEVER = 1e9
 YAW_STEPS = {f"yaw slip +{100 * step:.0f} %": (6, step * -0.35) for step in (0.10, 0.25, 0.50)}
 FORWARD_STEPS = {f"forward slip +{100 * step:.0f} % of the speed": (0, -step) for step in (0.05, 0.10, 0.20)}
 STEPS = YAW_STEPS | FORWARD_STEPS
@@ -47,24 +46,25 @@ BUDGETS = (1.0, 3.0, 10.0)  # false alarms per 1000 windows
 
 
 def course_of(windows: WindowSet, input_name: str, changes: tuple[int, ...]) -> Course:
-    """Learn windows in their order by `auto`, without any reaction to a change."""
-    settings = Settings()
-    dynamics, offset = learned_parts(settings, input_name)
-    averaging, change = settings.average_settings(), _core.ChangeSettings()
-    change.threshold = change.suspicion = NEVER
-    averaging.change = change
-    average = _core.ModelAverage(
-        "auto", settings.bases(), dynamics, offset, False, settings.filter_settings(), averaging
-    )
+    """Learn windows in their order by `auto`, with branches and without any reaction to a change."""
+    following, average = (_average(input_name, branches=branches) for branches in (True, False))
     odds, signed, nis = [], [], []
     for i in range(len(windows)):
+        following.learn(windows.input_history(i), windows.segments[i])
         update = average.learn(windows.input_history(i), windows.segments[i])
         unit = update.innovation / np.sqrt(np.diag(update.innovation_covariance))
         way = np.sign(windows.measured[i])
-        odds.append(average.change.log_odds)
+        odds.append(following.change.log_odds)
         signed.append((unit[0] * way[0], unit[2] * way[2]))
         nis.append(update.nis)
     return Course(np.array(odds), np.array(signed).reshape(-1, 2), np.array(nis), changes)
+
+
+def _average(input_name: str, *, branches: bool) -> _core.ModelAverage:
+    settings = Settings.model_validate({"change": {"branches": branches}})
+    dynamics, offset = learned_parts(settings, input_name)
+    filters = (settings.filter_settings(), _core.ModelAverageSettings())
+    return _core.ModelAverage("auto", settings.bases(), dynamics, offset, False, *filters)
 
 
 def windows_of(log: Log, input_name: str) -> WindowSet:

@@ -10,7 +10,7 @@ import ruptures
 from alarm_scores import Alarms, Course, Floats
 from river.drift import ADWIN, PageHinkley
 
-REST = 8  # windows after an alarm in which none is raised: as long as slipwise's test looks back
+REST = 8  # windows after an alarm in which none is raised
 
 
 def own(course: Course, threshold: float) -> Alarms:

@@ -40,7 +40,7 @@ FRACTIONS = frozenset(
         "disturbance.white",
         "hypotheses.average.largest_basis",
         "driven_speeds.kReferenceFraction",
-        "model_average.kChanged",
+        "causal_filter.kExpected",
         "score_covariance.kMostTaken",
     }
 )

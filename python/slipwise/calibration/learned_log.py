@@ -56,7 +56,7 @@ class Keep:
     wheel_separation: float  # m, nominal: where the search for limits of the sides begins
 
 
-def learn_log(
+def learn_log(  # noqa: PLR0913 - six things, each of its own sort
     drive: tuple[PreparedRun, ...],
     settings: Settings,
     horizons: Sequence[float],
@@ -84,7 +84,7 @@ def learn_log(
     return learn_with(learner, drive, horizons, keep=keep, progress=progress)
 
 
-def new_learner(
+def new_learner(  # noqa: PLR0913 - six things, each of its own sort
     runs: Sequence[Run],
     input_name: str,
     settings: Settings,

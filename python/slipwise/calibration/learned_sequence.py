@@ -169,9 +169,7 @@ def go_on(
         SettingsError: a basis or a term is unknown.
     """
     runs = tuple(run for drive in drives for run in drive)
-    learner = new_learner(
-        [run.run for run in runs], runs[0].input_name, settings, horizons, embargo=embargo
-    )
+    learner = new_learner([run.run for run in runs], runs[0].input_name, settings, horizons, embargo=embargo)
     found = []
     for place, drive in enumerate(drives):
         columns, _ = _drive(learner, drive, horizons, (), partial(_share, progress, place, len(drives)))

@@ -33,9 +33,7 @@ class Predictor:
     causal: bool = True  # False: it learned from the whole log, the windows to predict included
 
 
-def learned_counts(
-    learned: WindowSet, targets: WindowSet, embargo: float | None = None
-) -> tuple[Ints, Ints]:
+def learned_counts(learned: WindowSet, targets: WindowSet, embargo: float | None = None) -> tuple[Ints, Ints]:
     """Return how many windows count as learned for each target: after the embargo, and in-sample."""
     embargoed = learned.count_until(targets.position, _known_until(targets, embargo))
     in_sample = learned.count_until(targets.position, targets.end)
@@ -43,7 +41,7 @@ def learned_counts(
 
 
 def _known_until(targets: WindowSet, embargo: float | None) -> Floats:
-    """Return up to when each prediction knows what was measured [s]: one horizon before, where none is given."""
+    """Return up to when each prediction knows what was measured [s]; without an embargo, one horizon before."""
     return targets.start - (targets.length if embargo is None else embargo)
 
 
