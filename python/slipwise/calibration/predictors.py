@@ -41,7 +41,7 @@ def learned_counts(learned: WindowSet, targets: WindowSet, embargo: float | None
 
 
 def _known_until(targets: WindowSet, embargo: float | None) -> Floats:
-    """Return up to when each prediction knows what was measured [s]; without an embargo, one horizon before."""
+    """Return up to when each prediction knows what was measured [s]: without an embargo, a horizon before."""
     return targets.start - (targets.length if embargo is None else embargo)
 
 
