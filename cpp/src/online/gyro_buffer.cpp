@@ -15,7 +15,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kMissing = 0.25;    // [s] between samples, over which the robot may have turned otherwise
 SLIPWISE_TUNING(kStillTime, 1.0);    // [s] of standing still whose mean is a measured bias,
 SLIPWISE_TUNING(kCalm, 0.5);         // [s] after the inputs stopped and before they start
 SLIPWISE_TUNING(kStillStd, 2e-3);    // [rad/s] of that mean
@@ -26,11 +25,6 @@ SLIPWISE_TUNING(kWalk, 3e-3);        // [rad] per root of a second: noise of the
 SLIPWISE_TUNING(kScale, 5e-3);       // of the turn: the gyro's scale
 
 double squared(double value) { return value * value; }
-
-double at(const YawRate& first, const YawRate& second, double t) {
-  const double part = (t - first.t) / (second.t - first.t);
-  return first.rate + part * (second.rate - first.rate);
-}
 
 }  // namespace
 
@@ -52,7 +46,7 @@ void GyroBuffer::see_inputs(double t, const InputBuffer& inputs, double still_sp
     const double begin = present(seen_until_);
     seen_until_ = begin + kStillTime;
     variance_ += squared(kDrift) * kStillTime;
-    const auto turned = angle(begin, begin + kStillTime);
+    const auto turned = integral(samples_, begin, begin + kStillTime);
     const double from = begin - kCalm;
     const double until = begin + kStillTime + kCalm;
     if (!turned || inputs.empty() || inputs.unknown_since(from, until)) {
@@ -74,37 +68,15 @@ void GyroBuffer::see_course(const MeasuredPose& position) {
   if (later(kCourseTime, seconds)) {
     return;
   }
-  if (const auto turned = angle(course_->t, position.t)) {
+  if (const auto turned = integral(samples_, course_->t, position.t)) {
     const double apart = wrap_angle(*turned - bias_ * seconds - (position.yaw - course_->yaw));
     learn_bias(bias_ + apart / seconds, squared(kCourseStd / seconds));
   }
   course_ = position;
 }
 
-std::optional<double> GyroBuffer::angle(double start, double end) const {
-  auto next = std::ranges::upper_bound(samples_, start + kSameStamp, {}, &YawRate::t);
-  if (next == samples_.begin() || next == samples_.end()) {
-    return std::nullopt;
-  }
-  double sum = 0.0;
-  double now = start;
-  for (; next != samples_.end(); ++next) {
-    const YawRate& before = *std::prev(next);
-    if (later(next->t, before.t + kMissing)) {
-      return std::nullopt;
-    }
-    const double until = std::min(next->t, end);
-    sum += (until - now) * at(before, *next, 0.5 * (now + until));
-    now = until;
-    if (!later(end, next->t)) {
-      return sum;
-    }
-  }
-  return std::nullopt;
-}
-
 std::optional<GyroTurn> GyroBuffer::turn(double start, double end) const {
-  const auto turned = angle(start, end);
+  const auto turned = integral(samples_, start, end);
   if (!turned) {
     return std::nullopt;
   }
@@ -128,12 +100,6 @@ void GyroBuffer::measure(Segment& segment) const {
     positions->turn = false;
     course.z.conservativeResize(2);
     segment.measured.push_back(measured_turn(*turned));
-  }
-}
-
-void GyroBuffer::drop_before(double t) {
-  while (samples_.size() > 1 && samples_[1].t <= t) {
-    samples_.pop_front();
   }
 }
 

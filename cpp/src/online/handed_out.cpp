@@ -47,11 +47,11 @@ void SegmentStream::set_course(Segment& segment, const SegmentCut& cut) const {
 }
 
 /// Headings are integrals of a gyro, one every `kHeadings`, and a frame ends where samples are missing.
-void SegmentStream::turn_on(const YawRate& sample) {
+void SegmentStream::turn_on(const TimedNumber& sample) {
   if (turned_until_) {
     const double seconds = sample.t - turned_until_->t;
     breaks_ += later(seconds, kMissing) ? 1 : 0;
-    turned_ += 0.5 * seconds * (sample.rate + turned_until_->rate);
+    turned_ += 0.5 * seconds * (sample.value + turned_until_->value);
   }
   turned_until_ = sample;
   if (!later((poses_.empty() ? now_ : poses_.back().t) + kHeadings, sample.t)) {

@@ -169,8 +169,8 @@ void LoadedValues::check(Type<InputSample> /*type*/, const InputSample& value) {
   require(possible(value.t) && possible(value.twist), "an input is not finite");
 }
 
-void LoadedValues::check(Type<YawRate> /*type*/, const YawRate& value) {
-  require(possible(value.t) && possible(value.rate), "a yaw rate is not finite");
+void LoadedValues::check(Type<TimedNumber> /*type*/, const TimedNumber& value) {
+  require(possible(value.t) && possible(value.value), "a reading is not finite");
 }
 
 void LoadedValues::check(Type<MeasuredTilts> /*type*/, const MeasuredTilts& value) {
@@ -259,7 +259,7 @@ void MotionEvidence::check_loaded() const {
   probes_.check_loaded();
   require(gated_.size() == measured_.recent().size() && last_seconds_.size() <= gyro_seconds_,
           "the last windows of motion are not those that were counted");
-  require(goes_forward(yaw_rates_, &YawRate::t) &&
+  require(goes_forward(yaw_rates_, &TimedNumber::t) &&
               (!second_ || (!yaw_rates_.empty() && std::isfinite(*second_) && yaw_rates_.front().t <= *second_)),
           "turns are compared before there are any");
 }

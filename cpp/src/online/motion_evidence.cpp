@@ -140,10 +140,10 @@ std::optional<RecentEvidence> MotionEvidence::recent() const {
 double MotionEvidence::turn_until(double t) const {
   double turn = 0.0;
   for (std::size_t i = 1; i < yaw_rates_.size() && yaw_rates_[i - 1].t < t; ++i) {
-    const YawRate& before = yaw_rates_[i - 1];
-    const YawRate& after = yaw_rates_[i];
+    const TimedNumber& before = yaw_rates_[i - 1];
+    const TimedNumber& after = yaw_rates_[i];
     const double part = std::min(1.0, (t - before.t) / (after.t - before.t));
-    turn += 0.5 * part * (after.t - before.t) * (before.rate + after.rate);
+    turn += 0.5 * part * (after.t - before.t) * (before.value + after.value);
   }
   return turn;
 }

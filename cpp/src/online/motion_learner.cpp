@@ -23,8 +23,15 @@
 namespace slipwise {
 namespace {
 
-constexpr int kSlices = 8;  // of refits that a push may do where no segment waits: some 100 us
+constexpr double kPiece = 0.01;    // [s] of stamps in which a piece of what waits is learned,
+constexpr double kMostPieces = 8;  // and as many at a push at most: some 500 us
+constexpr int kSlices = 8;         // of refits that a push may do where no segment waits: some 100 us
 constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Of what waits, where so much time passed between stamps [s]: infinite at first.
+int pieces_in(double passed) {
+  return passed > kPiece ? static_cast<int>(std::ceil(std::min(passed / kPiece, kMostPieces))) : 1;
+}
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
 
@@ -126,6 +133,7 @@ void MotionLearner::push(const Measurement& measurement) {
   Measurement sample = measurement;
   double& t = stamp_of(sample);
   t = counted(t);
+  const double before = stream_.newest();
   const bool taken = stream_.push(sample);
   const auto* pose = std::get_if<MeasuredPose>(&sample);
   if (pose != nullptr && taken && !pose->position && pose->source == 0) {
@@ -136,7 +144,9 @@ void MotionLearner::push(const Measurement& measurement) {
       std::holds_alternative<Tilt>(sample)) {
     localizer_.forget_without(t);
   }
-  work();
+  int pieces = pieces_in(stream_.newest() - before);
+  while (pieces-- > 0 && work()) {
+  }
 }
 
 /// Takes over what the stream has complete. What should have been learned by now is learned at once, so that results

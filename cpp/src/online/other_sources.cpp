@@ -154,7 +154,7 @@ bool SegmentStream::take(const Reading& reading) {
   }
   readings_.push(reading);
   if (Readings::of_gyro(reading)) {
-    const YawRate rate{reading.t, reading.value};
+    const TimedNumber rate{reading.t, reading.value};
     evidence_.push_gyro(rate);
     if (settings_.heading_only) {
       turn_on(rate);

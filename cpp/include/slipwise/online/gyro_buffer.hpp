@@ -13,12 +13,6 @@
 
 namespace slipwise {
 
-/// A yaw rate at its stamp.
-struct YawRate {
-  double t;     ///< [s]
-  double rate;  ///< counter-clockwise [rad/s]
-};
-
 /// A turn that a gyro measured.
 struct GyroTurn {
   double angle;  ///< [rad]
@@ -35,7 +29,7 @@ class GyroBuffer {
       .column = "gyro_z", .sensor = "gyro", .unit = "rad/s", .meaning = "measured yaw rate, counter-clockwise"};
 
   /// Adds a sample, whose stamp is later than those before.
-  void push(const YawRate& sample) { samples_.push_back(sample); }
+  void push(const TimedNumber& sample) { samples_.push_back(sample); }
   /// Learns the bias from the samples until `t` [s], where `inputs`, which are known until then, stand still.
   void see_inputs(double t, const InputBuffer& inputs, double still_speed);
   /// Learns the bias from where a position's course heads.
@@ -47,7 +41,7 @@ class GyroBuffer {
   /// [rad/s], and its standard deviation.
   double bias() const { return bias_; }
   double bias_std() const;
-  void drop_before(double t);
+  void drop_before(double t) { slipwise::drop_before(samples_, t); }
   /// Another run begins; the bias stays.
   void restart();
 
@@ -58,10 +52,9 @@ class GyroBuffer {
   }
 
  private:
-  std::optional<double> angle(double start, double end) const;
   void learn_bias(double measured, double variance);
 
-  std::deque<YawRate> samples_;
+  std::deque<TimedNumber> samples_;     ///< yaw rates, counter-clockwise [rad/s]
   double bias_ = 0.0;                   ///< [rad/s]
   double variance_ = 4e-4;              ///< of the bias
   std::optional<double> seen_until_;    ///< inputs were looked at until then [s]

@@ -30,7 +30,7 @@ struct LoadedValues {
   static void check(Type<TwistStretch> type, const TwistStretch& value);
   static void check(Type<MeasuredPose> type, const MeasuredPose& value);
   static void check(Type<InputSample> type, const InputSample& value);
-  static void check(Type<YawRate> type, const YawRate& value);
+  static void check(Type<TimedNumber> type, const TimedNumber& value);
   static void check(Type<MeasuredTilts> type, const MeasuredTilts& value);
   static void check(Type<MappedGround> type, const MappedGround& value);
   static void check(Type<KnotCurve> type, const KnotCurve& value);

@@ -56,7 +56,7 @@ class MotionEvidence {
   void see_measured(const MeasuredPose& pose, const InputBuffer& commands, const InputBuffer& wheels);
   /// What the gate made of poses, some of which may have waited.
   void see_gated(const GatedPoses& gated, const InputBuffer& commands, const InputBuffer& wheels);
-  void push_gyro(const YawRate& sample) { yaw_rates_.push_back(sample); }
+  void push_gyro(const TimedNumber& sample) { yaw_rates_.push_back(sample); }
   /// Compares the turns of whole seconds before `t` [s], until which inputs are known.
   void compare_gyro(double t, const InputBuffer& commands, const InputBuffer& wheels);
 
@@ -92,8 +92,8 @@ class MotionEvidence {
   WindowCutter measured_;
   WindowCutter accepted_;
   ProbeCutter probes_;
-  std::deque<YawRate> yaw_rates_;  ///< since the second that is compared next
-  std::optional<double> second_;   ///< where that begins [s]
+  std::deque<TimedNumber> yaw_rates_;  ///< since the second that is compared next
+  std::optional<double> second_;       ///< where that begins [s]
   std::deque<GyroTurns> gyro_turns_;
   std::deque<GyroTurns> last_seconds_;  ///< of turning, each alone
   std::size_t gyro_seconds_ = 0;        ///< of turning, ever

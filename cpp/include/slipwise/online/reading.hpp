@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
+#include <optional>
 #include <string_view>
 
 namespace slipwise {
@@ -21,5 +23,16 @@ struct Reading {
   double t = 0.0;        ///< [s]
   double value = 0.0;
 };
+
+/// A number at its stamp.
+struct TimedNumber {
+  double t;  ///< [s]
+  double value;
+};
+/// The integral over [start, end] [s] of numbers in the order of their stamps, which change along lines in between;
+/// empty where some are missing.
+std::optional<double> integral(const std::deque<TimedNumber>& numbers, double start, double end);
+/// Drops what no integral from `t` [s] on needs.
+void drop_before(std::deque<TimedNumber>& numbers, double t);
 
 }  // namespace slipwise

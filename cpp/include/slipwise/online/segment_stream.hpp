@@ -187,7 +187,7 @@ class SegmentStream {
   void advance(double until);
   void process_wheels(double until);
   void process_pose(const MeasuredPose& raw);
-  void turn_on(const YawRate& sample);
+  void turn_on(const TimedNumber& sample);
   bool take_first(const MeasuredPose& pose);
   bool take_other(MeasuredPose pose);
   void begin_others();
@@ -254,11 +254,11 @@ class SegmentStream {
   bool learned_last_ = true;  ///< whether the last pose was
   ChordFinder chords_;
   Readings readings_;
-  bool position_last_ = false;           ///< whether the last pose was a position alone
-  double heading_ = 0.0;                 ///< of the last pose that was accepted [rad]
-  std::vector<PoseSource> others_;       ///< sources of poses beside the first
-  std::optional<YawRate> turned_until_;  ///< the last yaw rate, where these alone are learned from
-  double turned_ = 0.0;                  ///< integral of yaw rates [rad]
+  bool position_last_ = false;               ///< whether the last pose was a position alone
+  double heading_ = 0.0;                     ///< of the last pose that was accepted [rad]
+  std::vector<PoseSource> others_;           ///< sources of poses beside the first
+  std::optional<TimedNumber> turned_until_;  ///< the last yaw rate, where these alone are learned from
+  double turned_ = 0.0;                      ///< integral of yaw rates [rad]
   MotionEvidence evidence_;
 };
 
