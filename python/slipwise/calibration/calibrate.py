@@ -15,6 +15,7 @@ from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.model_content import ModelFacts, model_content
+from slipwise.calibration.mounts import mounts_of
 from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of, student_of
 from slipwise.calibration.prepared_run import (
@@ -102,6 +103,8 @@ def calibrate_by(
     learned = learn(windows)
     found = found_contradictions(learned, windows.drive, (log, input_name, settings))
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
+    mounts = mounts_of(log.runs, settings.sensor_extrinsics.pose) if learned.sources else ()
+    placed = {mount.name for mount in mounts}
     return Calibration(
         model_of(content, log, found),
         judged.verdict,
@@ -110,13 +113,15 @@ def calibrate_by(
         (
             *log.notes,
             *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.judged),
-            *(source.sentence() for source in learned.sources),
+            *(source.sentence(placed=source.name in placed) for source in learned.sources),
+            *(mount.sentence() for mount in mounts),
             *unused_measurements(log, settings, smooth=smooth),
             *unused_wheels(log, settings, learned.kept, input_name),
         ),
         smooth_windows(learned.kept, windows, settings) if smooth else None,
         learned.predictions if settings.estimator == AVERAGE else (),
         learned.baseline if settings.estimator == AVERAGE else (),
+        mounts,
     )
 
 

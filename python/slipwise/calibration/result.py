@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from slipwise.calibration.identifiability import Confounded
+from slipwise.calibration.mounts import Mount
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.smoothing import SmoothedCourse
@@ -103,6 +104,7 @@ class Calibration:
     smoothed: SmoothedCourse | None = None  # where it was asked for
     predictions: tuple[Predictions, ...] = ()  # those judged, of each horizon; what `evaluate` makes again
     baseline: tuple[Predictions, ...] = ()  # of the kinematic baseline over the same stretches
+    mounts: tuple[Mount, ...] = ()  # of sources of poses beside the first
     other: Calibration | None = None  # from wheel speeds, where the model answers from both inputs
 
     def __repr__(self) -> str:

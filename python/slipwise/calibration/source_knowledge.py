@@ -29,12 +29,12 @@ class LearnedSource:
     ]  # by fix, "" where none is said: [3] errors (x, y, theta) over those of the first
     segments: int  # learned between its poses
 
-    def sentence(self) -> str:
-        """Say it in words."""
+    def sentence(self, *, placed: bool = False) -> str:
+        """Say it in words; its place and clock are `placed` where both sources together told them better."""
         said = [f"{self.segments} segments are those of {self.name or 'the first source'}"]
-        if self.late_std > 0.0:
+        if self.late_std > 0.0 and not placed:
             said.append(f"stamped {self.late:+.3f} s late (± {self.late_std:.3f} s)")
-        if self.sensor_std.any():
+        if self.sensor_std.any() and not placed:
             x, y, yaw = self.sensor.tolist()
             said.append(f"sitting at {x:.2f} m, {y:.2f} m, {yaw:.3f} rad")
         sizes = [

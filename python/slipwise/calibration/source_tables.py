@@ -29,10 +29,17 @@ class PoseSourceTable(BaseModel):
     x: Metres = 0.0  # m, where it sits in base_link
     y: Metres = 0.0  # m
     yaw: Annotated[float, Field(ge=-math.pi, le=math.pi)] = 0.0  # rad
-    learn_extrinsics: bool = False  # the pose above is a guess to start from
+    learn_extrinsics: bool | None = None  # the pose above is a guess; None: where none is given
     late: Seconds = 0.0  # s by which its stamps are known to be late
     learn_clock_offset: bool = True  # what adds to that
     poorest: Annotated[float, Field(ge=1.0, le=1e6)] = _DEFAULT.poorest  # times the best source's errors
+
+    @property
+    def learns_place(self) -> bool:
+        """Whether the place is learned: where it is a guess, or nobody said where the source sits."""
+        if self.learn_extrinsics is not None:
+            return self.learn_extrinsics
+        return not self.model_fields_set & {"x", "y", "yaw"}
 
     def core(self, clock_std: float) -> _core.SourceSettings:
         """Return what the core takes; `clock_std` [s] is of a lateness that is learned."""
@@ -43,7 +50,7 @@ class PoseSourceTable(BaseModel):
             self.poorest,
         )
         source.clock_std = clock_std if self.learn_clock_offset else 0.0
-        source.sensor_std_xy, source.sensor_std_yaw = _SENSOR_STD if self.learn_extrinsics else (0.0, 0.0)
+        source.sensor_std_xy, source.sensor_std_yaw = _SENSOR_STD if self.learns_place else (0.0, 0.0)
         return source
 
 

@@ -111,6 +111,9 @@ def calibrate(
                 "model": calibration.model.save(folder / "model.yaml"),
                 "settings": write_settings(folder, chosen),
             }
+            if calibration.mounts:
+                files["mounts"] = folder / "sensor_mounts.txt"
+                write_text_whole(files["mounts"], _mounts(calibration))
             if calibration.smoothed is not None:
                 files["smoothed"] = calibration.smoothed.save(folder / "smoothed.csv")
             if not no_report:
@@ -137,12 +140,23 @@ def calibrate(
     return _exit_code(calibration)
 
 
+def _mounts(calibration: Calibration) -> str:
+    """Return where further sources of poses sit, for other tools."""
+    from slipwise.export.mounts import mounts_text
+
+    origin = calibration.model.content.provenance
+    beside = calibration.mounts[0].beside or "the first source"
+    logs = [f"log: {log.path} (sha256 {log.sha256[:16]})" for log in origin.logs]
+    head = f"slipwise {origin.slipwise_version}: where sources of poses sit, beside {beside}"
+    return mounts_text([mount.mounted() for mount in calibration.mounts], (head, *logs))
+
+
 def _exit_code(calibration: Calibration) -> int:
     return 0 if calibration.verdict.good else 1
 
 
 def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dict[str, Any]:
-    from slipwise.cli.document import calibration_part, head, log_part, verdict_part
+    from slipwise.cli.document import calibration_part, head, log_part, mounts_part, verdict_part
     from slipwise.cli.other_input import other_input_part
 
     verdict = {"exit_code": _exit_code(calibration), "verdict": verdict_part(calibration.verdict)}
@@ -152,7 +166,7 @@ def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dic
         | {"files": files}
         | calibration_part(calibration)
         | log_part(log, calibration.left_out)
-        | {"notes": list(calibration.notes)}
+        | {"notes": list(calibration.notes), "mounts": mounts_part(calibration)}
         | other_input_part(calibration.model, calibration)
     )
 

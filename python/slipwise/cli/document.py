@@ -49,6 +49,17 @@ def shares_part(model: Model) -> dict[str, Any] | None:
     return None if shares is None else shares.model_dump(exclude_none=True)
 
 
+def mounts_part(calibration: Calibration) -> list[dict[str, Any]]:
+    """Return where further sources of poses sit (x, y [m], yaw [rad]) and how late they are [s]."""
+    names = ("x", "y", "yaw", "late")
+    return [
+        {"name": mount.name, "beside": mount.beside, "seconds": mount.seconds}
+        | dict(zip(names, mount.value.tolist(), strict=True))
+        | {f"{name}_std": std for name, std in zip(names, mount.std.tolist(), strict=True)}
+        for mount in calibration.mounts
+    ]
+
+
 def memory_part(learned: LearnedSequence) -> dict[str, Any]:
     """Return the surfaces that are remembered after a sequence of logs, and what labels were worth."""
     return {

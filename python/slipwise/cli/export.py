@@ -30,6 +30,7 @@ class TargetName(StrEnum):
     px4 = "px4"
     ardupilot = "ardupilot"
     c_header = "c-header"
+    mounts = "mounts"
     all = "all"
 
 
@@ -84,6 +85,12 @@ def export(
     omni: Annotated[bool, typer.Option("--omni", help="The robot drives sideways, too.")] = False,
     small_alphas: Annotated[
         bool, typer.Option("--small-alphas", help="Write AMCL's alphas that are below its default, too.")
+    ] = False,
+    no_side_slip: Annotated[
+        bool,
+        typer.Option(
+            "--no-side-slip", help="The robot does not slip sideways: what looks like it is a sensor's mount."
+        ),
     ] = False,
     px4: Annotated[str | None, optional("VERSION", "Write for this PX4, such as 1.17.")] = None,
     ardupilot: Annotated[
@@ -141,6 +148,7 @@ def export(
         stamped_commands=stamped_commands,
         omni=omni,
         small_alphas=small_alphas,
+        no_side_slip=no_side_slip,
         wheel_base=wheel_base,
         px4=px4,
         ardupilot=ardupilot,
@@ -209,7 +217,7 @@ def _make(model: Model, name: str, to: TargetName, options: ExportOptions) -> _M
         target = find_target(to.value)
         return _Made([(target, export_model(model, target.name, name=name, options=options, force=True))], [])
     made = _Made([], [])
-    for target in TARGETS:
+    for target in (*TARGETS, *((find_target("mounts"),) if options.no_side_slip else ())):
         try:
             exported = export_model(model, target.name, name=name, options=options, force=True)
         except ModelError as problem:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from slipwise.export import ExportOptions, Merged
     from slipwise.models import Model
 
-_NO_PARAMETERS = ("px4", "ardupilot", "c-header")  # no files of ROS nodes
+_NO_PARAMETERS = ("px4", "ardupilot", "c-header", "mounts")  # no files of ROS nodes
 
 
 def merge_into(
@@ -117,8 +117,9 @@ def _merged_target(
     from slipwise.errors import SettingsError
     from slipwise.export import export_model, merge_firmware, merge_parameters
 
-    if target == "c-header":
-        raise SettingsError("a C header is no parameter file", where="--merge", advice="export it without")
+    if target in ("c-header", "mounts"):
+        what = "a C header is" if target == "c-header" else "mounts are"
+        raise SettingsError(f"{what} no parameter file", where="--merge", advice="export without --merge")
     if target in _NO_PARAMETERS:
         made = export_model(model, target, name=model_name, options=options, force=True)
         return merge_firmware(*source, made.text, made.kept)

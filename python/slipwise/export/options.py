@@ -43,6 +43,7 @@ class ExportOptions:
     omni: bool = False  # the robot drives sideways, too
     small_alphas: bool = False  # write alphas of AMCL that are below its default
     wheel_base: float | None = None  # m, of a vehicle that steers
+    no_side_slip: bool = False  # the robot does not slip sideways: what looks like it is a sensor's mount
     px4: str | None = None  # version, such as 1.17
     ardupilot: str | None = None  # version, such as 4.6
     logged: Mapping[str, float] = field(

@@ -12,6 +12,7 @@ from slipwise.export.autoware import autoware
 from slipwise.export.c_header import c_header
 from slipwise.export.diff_drive import diff_drive
 from slipwise.export.firmware import FirmwareFile, ardupilot, px4
+from slipwise.export.mounts import mount_of_look, mounts_text
 from slipwise.export.mppi import mppi
 from slipwise.export.options import ExportOptions
 from slipwise.export.origin import origin_lines
@@ -64,6 +65,17 @@ def _c_header(model: Model, _: ExportOptions, origin: list[str]) -> Exported:
     return Exported(c_header(model, origin), {p.name: p.value for p in model.content.parameters})
 
 
+def _mounts(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
+    found = mount_of_look(model)
+    if not options.no_side_slip:
+        raise ModelError(
+            f"one source of poses does not tell side slip from a mount ({found.sentence()})",
+            advice="add --no-side-slip where the robot does not slip sideways",
+        )
+    values = {name: getattr(found, name)[0] for name in ("x", "y", "yaw") if getattr(found, name)}
+    return Exported(mounts_text((found,), origin), values)
+
+
 TARGETS = (
     Target("diff-drive", "diff_drive_controller.yaml", _parameters(diff_drive), input="wheel"),
     Target("mppi", "nav2_mppi.yaml", _parameters(mppi), input="command"),
@@ -74,6 +86,8 @@ TARGETS = (
     Target("ardupilot", "ardupilot.param", _firmware(ardupilot)),
     Target("c-header", "model.h", _c_header, sideways=True),
 )
+#: Of models whose slip looks like a mount, where the user says that it is one.
+MOUNTS = Target("mounts", "sensor_mounts.txt", _mounts, sideways=True)
 
 
 def find_target(name: str) -> Target:
@@ -82,10 +96,12 @@ def find_target(name: str) -> Target:
     Raises:
         SettingsError: there is none.
     """
-    for target in TARGETS:
+    for target in (*TARGETS, MOUNTS):
         if target.name == name:
             return target
-    raise SettingsError(f"unknown target '{name}'", advice=f"one of {', '.join(t.name for t in TARGETS)}")
+    raise SettingsError(
+        f"unknown target '{name}'", advice=f"one of {', '.join(t.name for t in (*TARGETS, MOUNTS))}"
+    )
 
 
 def export_model(

@@ -88,7 +88,8 @@ def sensor_sentences(model: Model) -> list[str]:
     )
     terms = ", ".join(_TERMS[axis] for axis in seen)
     look_like = f"The learned slip ({terms}) looks like a pose sensor {place}"
-    return [f"{look_like}: if it sits there, add {numbers}"]
+    there = f"if it sits there, add {numbers}"
+    return [f"{look_like}: {there}; `export --to mounts --no-side-slip` writes it"]
 
 
 def _along(body: BodyTwists, axis: int) -> tuple[np.ndarray, np.ndarray]:

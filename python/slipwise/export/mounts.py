@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where sensors sit, as a static transform, a URDF snippet and settings of slipwise."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from xml.sax.saxutils import quoteattr
+
+from slipwise.errors import ModelError
+from slipwise.export.origin import one_line
+from slipwise.models.model import Model
+from slipwise.models.sensor_look import sensor_look
+from slipwise.number_text import estimate_text
+
+Estimate = tuple[float, float]  # value and standard deviation
+
+
+@dataclass(frozen=True)
+class Mounted:
+    """A sensor in base_link; None stands for what is not known."""
+
+    name: str
+    x: Estimate | None  # m ahead
+    y: Estimate | None  # m to the left
+    yaw: Estimate | None  # rad to the left
+    late: Estimate | None = None  # s that its stamps are later than those of the first source
+    first: bool = False  # whether it is the one of [sensor_extrinsics]
+
+    def sentence(self) -> str:
+        """Say where it sits; empty where nothing is known."""
+        said = [
+            f"{estimate_text(abs(place[0]), place[1])} m {plus if place[0] >= 0.0 else minus}"
+            for place, plus, minus in ((self.x, "ahead", "behind"), (self.y, "to the left", "to the right"))
+            if place is not None
+        ]
+        parts = [f"sits {' and '.join(said)}"] if said else []
+        if self.yaw is not None:
+            side = "left" if self.yaw[0] >= 0.0 else "right"
+            degrees = estimate_text(math.degrees(abs(self.yaw[0])), math.degrees(self.yaw[1]))
+            parts.append(f"is turned by {degrees} deg to the {side}")
+        if self.late is not None:
+            order = "later" if self.late[0] >= 0.0 else "earlier"
+            parts.append(f"is stamped {estimate_text(abs(self.late[0]), self.late[1])} s {order}")
+        return f"{self.name} {', '.join(parts)}" if parts else ""
+
+
+def mount_of_look(model: Model, *, frame: str = "pose_sensor") -> Mounted:
+    """Return where the pose sensor sits on a robot that does not slip sideways, from what looks like that.
+
+    Raises:
+        ModelError: nothing of the slip looks like a sensor off the centre of turning.
+    """
+    settings = model.content.provenance.settings.get("sensor_extrinsics")
+    given = settings if isinstance(settings, dict) else {}
+    if model.motion.slip_size == 0 or model.motion.sensor_extrinsics:
+        raise ModelError(
+            "the model has no slip that looks like a mount",
+            advice="calibrate with a basis, and without sensor_extrinsics.learn",
+        )
+    look = sensor_look(model)
+    known = [
+        (float(given.get(name, 0.0)) + look.pose[axis], look.std[axis]) if look.clear(axis) else None
+        for axis, name in enumerate(("x", "y", "yaw"))
+    ]
+    if not any(known):
+        raise ModelError(
+            "no part of the learned slip is clearly what a sensor off the centre of turning looks like",
+            advice="drive arcs of both hands, and turns in place",
+        )
+    x, y, yaw = known
+    return Mounted(frame, x, y, yaw, first=True)
+
+
+def mounts_text(mounts: Sequence[Mounted], origin: Sequence[str]) -> str:
+    """Return the file: a static transform, a URDF snippet and settings of slipwise for each sensor."""
+    lines = [f"# {one_line(line)}" for line in (*origin, *(mount.sentence() for mount in mounts))]
+    lines += ["", "# ROS 2, static transforms:", *map(_transform, mounts)]
+    lines += ["", "# URDF:", *(line for mount in mounts for line in _urdf(mount))]
+    lines += ["", "# slipwise, in a settings file:", *(line for mount in mounts for line in _settings(mount))]
+    return "\n".join(lines) + "\n"
+
+
+def _value(estimate: Estimate | None) -> float:
+    return 0.0 if estimate is None else round(estimate[0], 5) + 0.0
+
+
+def _pose(mount: Mounted) -> tuple[float, float, float]:
+    return _value(mount.x), _value(mount.y), _value(mount.yaw)
+
+
+def frame_name(name: str) -> str:
+    """Return a name of a frame: that of a topic without what frames cannot have."""
+    return re.sub(r"[^A-Za-z0-9_]+", "_", name).strip("_") or "pose_sensor"
+
+
+def _transform(mount: Mounted) -> str:
+    x, y, yaw = _pose(mount)
+    return (
+        f"ros2 run tf2_ros static_transform_publisher --x {x:g} --y {y:g} --z 0 --yaw {yaw:g} "
+        f"--frame-id base_link --child-frame-id {frame_name(mount.name)}"
+    )
+
+
+def _urdf(mount: Mounted) -> list[str]:
+    x, y, yaw = _pose(mount)
+    link = quoteattr(frame_name(mount.name))
+    return [
+        f"<link name={link}/>",
+        f'<joint name={quoteattr(frame_name(mount.name) + "_joint")} type="fixed">',
+        '  <parent link="base_link"/>',
+        f"  <child link={link}/>",
+        f'  <origin xyz="{x:g} {y:g} 0" rpy="0 0 {yaw:g}"/>',
+        "</joint>",
+    ]
+
+
+def _settings(mount: Mounted) -> list[str]:
+    numbers = [
+        f"{name} = {_value(estimate):g}"
+        for name, estimate in (("x", mount.x), ("y", mount.y), ("yaw", mount.yaw))
+        if estimate is not None
+    ]
+    if mount.first:
+        return ["[sensor_extrinsics]", *numbers]
+    late = [] if mount.late is None else [f"late = {_value(mount.late):g}"]
+    return ["[[pose_sources]]", f"name = {json.dumps(mount.name)}", *numbers, *late]

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where a further source of poses sits, and how late it is, from simulated rigs and real logs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sample_sources import Source, run_of, seen_by, true_run
+
+from slipwise.calibration import Calibration, calibrate
+from slipwise.calibration.mounts import LATE, YAW, X, Y, mounts_of
+from slipwise.calibration.source_tables import PoseSourceTable
+from slipwise.logs import Log, Poses, Run, open_log
+
+ARM, TURNED, LATER = (0.45, -0.2), 0.035, 0.12
+
+
+def rig(seed: int) -> tuple[Run, np.ndarray]:
+    """Return a drive that two sources saw, and the pose and lateness of the second."""
+    run, random = true_run(seed)
+    truth = random.uniform((-0.6, -0.4, -0.15, -0.25), (0.6, 0.4, 0.15, 0.25))
+    second = Source(std=(0.02, 0.01), late=truth[LATE], sensor=tuple(truth[:LATE].tolist()))
+    return run_of(run, seen_by(run.poses, Source(), random), other=seen_by(run.poses, second, random)), truth
+
+
+@pytest.mark.slow
+def test_intervals_of_many_rigs_hold_the_truth_and_are_small() -> None:
+    errors, stds = [], []
+    for seed in range(100):
+        run, truth = rig(seed)
+        (mount,) = mounts_of([run])
+        errors.append(mount.value - truth)
+        stds.append(mount.std)
+    held = {k: np.mean(np.abs(np.array(errors)) < k * np.array(stds)) for k in (1.645, 1.96)}
+    assert 0.86 <= held[1.645] <= 0.96, held
+    assert 0.92 <= held[1.96] <= 0.98, held
+    rms = np.sqrt(np.mean(np.square(errors), axis=0))
+    assert max(rms[X], rms[Y]) < 0.01
+    assert np.degrees(rms[YAW]) < 0.1
+    assert rms[LATE] < 0.005
+
+
+def beside_its_copy(log: Log, random: np.random.Generator, std: tuple[float, float]) -> Log:
+    """Return a log beside a copy of its poses, shifted on the robot, turned and late."""
+    runs = []
+    for run in log.runs:
+        p, noise = run.poses, random.standard_normal((3, len(run.poses)))
+        cos, sin = np.cos(p.yaw), np.sin(p.yaw)
+        copy = Poses(
+            t=p.t + LATER,
+            x=p.x + ARM[0] * cos - ARM[1] * sin + std[0] * noise[0],
+            y=p.y + ARM[0] * sin + ARM[1] * cos + std[0] * noise[1],
+            yaw=p.yaw + TURNED + std[1] * noise[2],
+            frame=p.frame,
+        )
+        runs.append(replace(run, others={"copy": copy}, source="first"))
+    return replace(log, runs=tuple(runs))
+
+
+@pytest.mark.parametrize(
+    "name", ["husky/tile_deflated_tyres", "warthog/grass_7_29_14h46s15", "robotino/table_gray"]
+)
+def test_a_shifted_copy_of_a_real_log_gives_the_shift(name: str, real_log_dir: Path) -> None:
+    log = open_log(real_log_dir / f"{name}.csv.gz")
+    (mount,) = mounts_of(beside_its_copy(log, np.random.default_rng(1), (0.01, 0.005)).runs)
+    truth = np.array((*ARM, TURNED, LATER))
+    assert np.all(np.abs(mount.value - truth) < 3.0 * mount.std), (mount.value, mount.std)
+    assert np.all(mount.std < (0.01, 0.01, 0.002, 0.005))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["husky/tile_deflated_tyres", "warthog/grass_7_29_14h46s15"])
+def test_a_shifted_copy_of_a_real_log_does_no_harm_where_nobody_says_where_it_sits(
+    name: str, real_log_dir: Path
+) -> None:
+    log = open_log(real_log_dir / f"{name}.csv.gz")
+    both = beside_its_copy(log, np.random.default_rng(1), (0.01, 0.005))
+    alone, beside = (calibrate(each, input="wheel") for each in (log, both))
+    assert np.all(errors_of(beside) < 1.15 * errors_of(alone)), (errors_of(alone), errors_of(beside))
+    assert [mount.name for mount in beside.mounts] == ["copy"]
+    assert any(note.startswith("copy sits 0.4") for note in beside.notes)
+
+
+def errors_of(calibration: Calibration) -> np.ndarray:
+    held_out = calibration.model.content.verdict.held_out
+    assert held_out is not None
+    return np.array((held_out.position, held_out.heading))
+
+
+def test_positions_alone_tell_an_arm_and_no_heading() -> None:
+    run, truth = rig(3)
+    positions = replace(run.others["other"], course=True)
+    (mount,) = mounts_of([replace(run, others={"other": positions})])
+    assert np.all(np.abs(mount.value - truth)[[X, Y, LATE]] < 0.03)
+    assert mount.mounted().yaw is None
+
+
+def test_a_drive_straight_ahead_does_not_tell_an_arm() -> None:
+    t = np.arange(0.0, 120.0, 0.1)
+    zero = np.zeros(len(t))
+    random = np.random.default_rng(2)
+
+    def poses(ahead: float) -> Poses:
+        noise = 0.01 * random.standard_normal((3, len(t)))
+        frame = np.zeros(len(t), np.int64)
+        return Poses(t=t, x=t + ahead + noise[0], y=zero + noise[1], yaw=zero + noise[2], frame=frame)
+
+    run = Run("straight", None, None, poses(0.0), others={"other": poses(0.5)}, source="first")
+    (mount,) = mounts_of([run])
+    found = mount.mounted()
+    assert found.x is None
+    assert found.y is None
+    assert found.late is None
+    assert found.yaw is not None
+    assert abs(found.yaw[0]) < 0.002
+    assert "turned too little to tell how far ahead and how far to a side it sits" in mount.sentence()
+
+
+def test_the_place_of_a_source_is_learned_unless_the_settings_give_one() -> None:
+    tables = ({"name": "a"}, {"name": "a", "x": 0.3}, {"name": "a", "x": 0.3, "learn_extrinsics": True})
+    assert [PoseSourceTable.model_validate(table).learns_place for table in tables] == [True, False, True]
