@@ -65,12 +65,37 @@ def shares_of(rows: Floats, *, sensor_y: float = 0.0, sensor_yaw: float = 0.0) -
     """
     if len(rows) < _FEWEST:
         return None
+    ahead, turned = _moved(rows, sensor_y, sensor_yaw)
+    speed, yaw_rate = _axis(rows, ahead, 0), _axis(rows, turned, 2)
+    return Shares(speed=speed, yaw_rate=yaw_rate) if speed or yaw_rate else None
+
+
+def commanded_to_body(
+    rows: Floats, *, sensor_y: float = 0.0, sensor_yaw: float = 0.0
+) -> dict[str, tuple[Floats, Floats]]:
+    """Return what is there of commands in each window, and what the body does, by axis; empty if too few are.
+
+    Commands are those of the window and its neighbours, weighted as they act; a picture of them against the
+    body shows dead bands and whatever is not in proportion. Arguments are those of `shares_of`.
+    """
+    if len(rows) < _FEWEST:
+        return {}
+    found, duration = {}, rows[:, _DURATION]
+    ahead, turned = _moved(rows, sensor_y, sensor_yaw)
+    for axis, body, column in (("speed", ahead, 0), ("yaw_rate", turned, 2)):
+        fit = _fit(rows[:, _COMMANDS + column] / duration, body / duration, _places(rows, _COMMANDS))
+        gain = _gain(fit) if len(fit) >= _FEWEST else 0.0
+        if gain != 0.0:
+            found[axis] = (fit.inputs @ (fit.coefficients() / gain), fit.outputs)
+    return found
+
+
+def _moved(rows: Floats, sensor_y: float, sensor_yaw: float) -> tuple[Floats, Floats]:
+    """Return the way ahead [m] and the turn [rad] of the body in each window."""
     half = 0.5 * rows[:, _TURN]
     heading = rows[:, _COURSE] - (rows[:, _START_YAW] - sensor_yaw) - half
     arc = rows[:, _DISTANCE] / np.sinc(half / np.pi)
-    ahead = arc * np.cos(heading) + sensor_y * rows[:, _TURN]
-    speed, yaw_rate = _axis(rows, ahead, 0), _axis(rows, rows[:, _TURN], 2)
-    return Shares(speed=speed, yaw_rate=yaw_rate) if speed or yaw_rate else None
+    return arc * np.cos(heading) + sensor_y * rows[:, _TURN], rows[:, _TURN]
 
 
 def _axis(rows: Floats, body: Floats, column: int) -> AxisShares | None:

@@ -12,8 +12,8 @@ from slipwise.calibration.next_step import verdict_label
 from slipwise.cli.output import Column, Output
 from slipwise.cli.run_folder import killed_runs
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, NEGLIGIBLE
-from slipwise.models.share_words import AXES, axis_shares, percent
-from slipwise.number_text import DASH, count_text, estimate_texts, number_text
+from slipwise.models.share_words import SHARE_HEAD, share_rows
+from slipwise.number_text import count_text, estimate_texts, number_text
 
 if TYPE_CHECKING:
     from slipwise.calibration import History, Verdict
@@ -105,13 +105,9 @@ def show_parameters(output: Output, parameters: Sequence[PhysicalParameter]) -> 
 
 def show_shares(output: Output, model: Model) -> None:
     """Show what arrives of commands, at the wheels and at the body; nothing where the log does not say it."""
-    rows = [
-        (AXES[axis][0], *(DASH if each is None else percent(each) for each in (s.arrives, s.wheels, s.floor)))
-        for axis, s in axis_shares(model).items()
-    ]
+    rows = share_rows(model)
     if rows:
-        columns = ("at the body", "at the wheels", "of that on the floor")
-        heads = (Column("commanded", whole=True), *(Column(name, True, whole=True) for name in columns))
+        heads = [Column(name, place > 0, whole=True) for place, name in enumerate(SHARE_HEAD)]
         output.table("What arrives of commands over the log", heads, rows)
 
 

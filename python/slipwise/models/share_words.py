@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from slipwise.models.model import Model
 from slipwise.models.schema import AxisShares, Share
-from slipwise.number_text import estimate_text, number_text
+from slipwise.number_text import DASH, estimate_text, number_text
 
 AXES = {"speed": ("speed", "m/s"), "yaw_rate": ("yaw rate", "rad/s")}
+SHARE_HEAD = ("commanded", "at the body", "at the wheels", "of that on the floor")
 _KNOWN = 0.15  # standard deviation up to which a share is said
 
 
@@ -32,6 +33,14 @@ def share_sentences(model: Model) -> list[str]:
             f"{percent(said.small)} arrives, of larger ones {percent(said.large)}."
         )
     return sentences
+
+
+def share_rows(model: Model) -> list[tuple[str, ...]]:
+    """Return rows of a table with `SHARE_HEAD`; none where the log does not say what arrives."""
+    return [
+        (AXES[axis][0], *(DASH if each is None else percent(each) for each in (s.arrives, s.wheels, s.floor)))
+        for axis, s in axis_shares(model).items()
+    ]
 
 
 def percent(share: Share) -> str:

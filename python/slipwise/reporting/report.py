@@ -21,6 +21,7 @@ from slipwise.reporting.sections.nis import NisSection
 from slipwise.reporting.sections.paths import PathsSection
 from slipwise.reporting.sections.provenance import ProvenanceSection
 from slipwise.reporting.sections.scores import ScoresSection
+from slipwise.reporting.sections.shares import SharesSection
 from slipwise.reporting.sections.surfaces import SurfacesSection
 from slipwise.reporting.sections.verdict import VerdictSection
 
@@ -31,6 +32,7 @@ SECTIONS: tuple[Section, ...] = (
     ErrorsSection(),
     NisSection(),
     ConvergenceSection(),
+    SharesSection(),
     GroundSection(),
     SurfacesSection(),
     LeftOutSection(),

@@ -37,6 +37,7 @@ def test_sections_stand_in_the_order_of_the_reader_s_questions(page: str) -> Non
         "Errors over time",
         "Is the reported uncertainty true?",
         "Parameters while learning",
+        "What arrives of commands",
         "The ground along the drive",
         "Learned slip, and the speeds and yaw rates driven",
         "Data left out, and what was guessed",
