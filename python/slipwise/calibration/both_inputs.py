@@ -103,4 +103,6 @@ def _learned_together(log: Log, settings: Settings, progress: Progress | None) -
         finally:
             stop.set()
     model = Model(commands.model.content.model_copy(update={"other_input": wheels.model.content}))
-    return replace(commands, model=model, other=wheels)
+    lacking = [f"{item.count} x {item.reason}" for item in wheels.left_out if item.kind == "unused-run"]
+    said = [f"From wheel speeds: {note}" for note in (*wheels.notes, *lacking) if note not in commands.notes]
+    return replace(commands, model=model, other=wheels, notes=(*commands.notes, *said))

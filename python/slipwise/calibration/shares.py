@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,15 +108,12 @@ def _axis(rows: Floats, body: Floats, column: int) -> AxisShares | None:
     arrives = _share(to_body)
     if arrives is None:
         return None
-    small = _small_commands(to_body)
     return AxisShares(
         windows=len(to_body),
         arrives=arrives,
         wheels=_share(_fit(commands, wheels, np.intersect1d(commanded, rolled))),
         floor=_share(_fit(wheels, moved, rolled)),
-        below=small[0] if small else None,
-        small=small[1] if small else None,
-        large=small[2] if small else None,
+        **_out_of_proportion(to_body),
     )
 
 
@@ -147,25 +145,43 @@ def _gain(fit: _Fit) -> float:
     return float(fit.coefficients().sum())
 
 
-def _small_commands(fit: _Fit) -> tuple[float, Share, Share] | None:
-    """Return a size of commands, and the shares of those below and above it, where they clearly differ."""
+def _out_of_proportion(fit: _Fit) -> dict[str, Any]:
+    """Return the shares of small and large commands, and of either side, where they clearly differ."""
     whole = fit.coefficients()
     if not abs(whole.sum()) > 0.0:
-        return None
-    acting = np.abs(fit.inputs @ (whole / whole.sum()))  # what of the commands is there by now
-    driven = acting > _DRIVEN * acting.max()
-    if driven.sum() < 2 * _FEWEST:
-        return None
-    size = float(np.median(acting[driven]))
+        return {}
+    acts = whole / whole.sum()  # what of the commands of the time is there by now
+    size = np.abs(fit.inputs @ acts)
+    driven = size > _DRIVEN * size.max()
+    middle = float(np.median(size[driven])) if driven.any() else 0.0
+    sizes = _apart(fit, acts, lambda now: np.abs(now) > middle)
+    sides = _apart(fit, acts, lambda now: now > 0.0)
+    found: dict[str, Any] = {}
+    if sizes is not None:
+        found |= {"below": middle, "small": sizes[0], "large": sizes[1]}
+    if sides is not None:
+        found |= {"backward": sides[0], "forward": sides[1]}
+    return found
 
-    def part(fit: _Fit, *, large: bool) -> float:
-        now = fit.inputs @ (whole / whole.sum())
-        chosen = (np.abs(now) > size) == large
-        return float(now[chosen] @ fit.outputs[chosen] / (now[chosen] @ now[chosen]))
 
-    small, large = part(fit, large=False), part(fit, large=True)
-    apart = fit.scatter(lambda some: part(some, large=False) - part(some, large=True))
-    if abs(small - large) < max(_CLEAR * apart, _LARGE * abs(large)):
+def _apart(
+    fit: _Fit, acts: Floats, choose: Callable[[Floats], NDArray[np.bool_]]
+) -> tuple[Share, Share] | None:
+    """Return the shares of commands that are not chosen and that are; None unless they clearly differ."""
+    now = fit.inputs @ acts
+    driven = np.abs(now) > _DRIVEN * np.abs(now).max()
+    if min((driven & choose(now)).sum(), (driven & ~choose(now)).sum()) < _FEWEST:
         return None
-    stds = [fit.scatter(partial(part, large=which)) for which in (False, True)]
-    return size, Share(value=small, std=stds[0]), Share(value=large, std=stds[1])
+
+    def part(some: _Fit, *, chosen: bool) -> float:
+        now = some.inputs @ acts
+        at = choose(now) == chosen
+        square = float(now[at] @ now[at])
+        return float(now[at] @ some.outputs[at]) / square if square > 0.0 else 0.0
+
+    one, other = part(fit, chosen=False), part(fit, chosen=True)
+    spread = fit.scatter(lambda some: part(some, chosen=False) - part(some, chosen=True))
+    if abs(one - other) < max(_CLEAR * spread, _LARGE * max(abs(one), abs(other))):
+        return None
+    stds = [fit.scatter(partial(part, chosen=which)) for which in (False, True)]
+    return Share(value=one, std=stds[0]), Share(value=other, std=stds[1])

@@ -163,6 +163,8 @@ class AxisShares(Section):
     below: NotNegative | None = None  # commands of this size arrive otherwise than larger ones [m/s or rad/s]
     small: Share | None = None  # of these
     large: Share | None = None  # of larger ones
+    backward: Share | None = None  # of commands backward or to the right, where these arrive otherwise
+    forward: Share | None = None  # of commands ahead or to the left
 
 
 class Shares(Section):

@@ -24,15 +24,24 @@ def share_sentences(model: Model) -> list[str]:
     found = {axis: said for axis, said in axis_shares(model).items() if _known(said.arrives)}
     parts = [_of_axis(said, AXES[axis][0]) for axis, said in found.items()]
     sentences = [f"Over this log, {' and '.join(parts)} arrive."] if parts else []
-    for axis, said in found.items():
-        if said.below is None or said.small is None or said.large is None:
-            continue
-        name, unit = AXES[axis]
-        sentences.append(
-            f"That is no one number: of {name}s commanded below {number_text(said.below, 2)} {unit} "
-            f"{percent(said.small)} arrives, of larger ones {percent(said.large)}."
+    apart = [text for axis, said in found.items() for text in _out_of_proportion(said, axis)]
+    return [*sentences, f"That is no one number: {'; '.join(apart)}."] if apart else sentences
+
+
+def _out_of_proportion(said: AxisShares, axis: str) -> list[str]:
+    name, unit = AXES[axis]
+    texts = []
+    if said.below is not None and said.small is not None and said.large is not None:
+        size = f"{number_text(said.below, 2)} {unit}"
+        texts.append(
+            f"of {name}s commanded below {size} {percent(said.small)}, of larger ones {percent(said.large)}"
         )
-    return sentences
+    if said.backward is not None and said.forward is not None:
+        ways = ("backward", "ahead") if axis == "speed" else ("to the right", "to the left")
+        texts.append(
+            f"of {name}s {ways[0]} {percent(said.backward)}, of those {ways[1]} {percent(said.forward)}"
+        )
+    return texts
 
 
 def share_rows(model: Model) -> list[tuple[str, ...]]:

@@ -43,6 +43,7 @@ def test_shares_hold_the_truth_of_many_drives() -> None:
             held += [abs(share.value - truth) < 1.645 * share.std + 0.002 for share, truth in pairs]
             widest = max(widest, *(share.std for share, _ in pairs))
             assert axis.below is None, f"seed {seed}, lag {lag}: this robot is in proportion"
+            assert axis.forward is None, f"seed {seed}, lag {lag}: this robot turns alike to both sides"
     assert np.mean(held) >= 0.9
     assert widest < 0.15
 
@@ -85,3 +86,15 @@ def test_a_sensor_that_is_known_to_be_turned_and_off_centre_changes_nothing() ->
     assert plain.speed is not None
     assert known.speed is not None
     assert known.speed.arrives.value == pytest.approx(plain.speed.arrives.value)
+
+
+def test_a_side_that_turns_less_is_told_from_the_other() -> None:
+    run = simulated_log(DRIVE).runs[0]
+    assert run.commands is not None
+    omega = run.commands.omega
+    asked = replace(run.commands, omega=np.where(omega < 0.0, 2.0 * omega, omega))
+    _, yaw_rate = of_axes(Log(runs=(replace(run, commands=asked),)))
+    assert yaw_rate.backward is not None
+    assert yaw_rate.forward is not None
+    assert yaw_rate.backward.value == pytest.approx(0.2, abs=0.04)
+    assert yaw_rate.forward.value == pytest.approx(0.4, abs=0.08)
