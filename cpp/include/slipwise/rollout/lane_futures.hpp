@@ -15,6 +15,7 @@ class NoisyRide : public OutputLanes<L> {
  public:
   using Scalar = L::Scalar;
   using Vector = L::Vector;
+  using Floats = NormalLanes<L>::Floats;
   using Robot = RobotLanes<L, Actuator::Response, Slip::Any>;
 
   SLIPWISE_LANES NoisyRide(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block)
@@ -95,15 +96,28 @@ class NoisyRide : public OutputLanes<L> {
     }
   }
 
+  /// Numbers come in pairs: of every second time one is left for the next.
+  SLIPWISE_LANES void draw_three(Floats* normal) {
+    if (spares_) {
+      normal[0] = spare_;
+      normal_.next_two(normal[1], normal[2]);
+    } else {
+      normal_.next_two(normal[0], normal[1]);
+      normal_.next_two(normal[2], spare_);
+    }
+    spares_ = !spares_;
+  }
+
   SLIPWISE_LANES void draw_white(Scalar duration, const MotionLanes<L>& motion, Vector* white) {
     const Scalar drawn_time = drawn_time_ < duration ? drawn_time_ : duration;
     const Scalar fresh = (duration - drawn_time) / duration;
     drawn_time_ -= drawn_time;
-    Vector normal[4];
-    normal_.next_two(normal[0], normal[1]);
-    normal_.next_two(normal[2], normal[3]);
+    Floats normal[3];  // which have the digits of float; so have their deviations
+    draw_three(normal);
     for (std::size_t c = 0; c < 3; ++c) {
-      white[c] = root_of<Scalar>(white_variance<L>(plan_.noise, motion, c) * fresh) * normal[c];
+      const Vector variance = white_variance<L>(plan_.noise, motion, c) * fresh;
+      const Floats deviation = root_of<float>(__builtin_convertvector(variance, Floats));
+      white[c] = __builtin_convertvector(deviation * normal[c], Vector);
       if (in_tail_) {
         tail_[c] = tail_[c] + white[c];
       } else if (owes_) {
@@ -125,6 +139,8 @@ class NoisyRide : public OutputLanes<L> {
   Scalar tail_time_ = 0;   ///< [s]
   Scalar drawn_time_ = 0;  ///< [s] whose noise is drawn already
   bool in_tail_ = false, owes_ = false;
+  Floats spare_;  ///< a normal number, where it `spares_` one
+  bool spares_ = false;
 };
 
 /// Rolls the block out with noise.

@@ -78,6 +78,13 @@ class NormalLanes {
   }
 
   SLIPWISE_LANES void next_two(Vector& one, Vector& other) {
+    Floats first, second;
+    next_two(first, second);
+    one = __builtin_convertvector(first, Vector);
+    other = __builtin_convertvector(second, Vector);
+  }
+
+  SLIPWISE_LANES void next_two(Floats& one, Floats& other) {
     const Integers first = bits(), second = bits();
     // from 2^-24 to 1, and half a turn to each side
     const Floats uniform = __builtin_convertvector((first >> 8) & 0xFFFFFF, Floats) * 0x1p-24F + 0x1p-24F;
@@ -87,8 +94,8 @@ class NormalLanes {
     const Floats radius = root_of<float>(log * -2.0F);
     LaneArc<Floats> arc;
     wide_lane_arc<float>(angle, arc);
-    one = __builtin_convertvector(radius - radius * (angle * arc.b), Vector);
-    other = __builtin_convertvector(radius * (angle * arc.a), Vector);
+    one = radius - radius * (angle * arc.b);
+    other = radius * (angle * arc.a);
   }
 
  private:
