@@ -46,9 +46,10 @@ void bind_limit_kinds(nb::module_& m) {
       "slew_rate_up"_a = AxisLimits{}.slew_rate_up, "slew_rate_down"_a = AxisLimits{}.slew_rate_down);
   nb::enum_<LimitKind> kinds(m, "LimitKind");
   for (const LimitKind kind : kLimitKinds) {
-    const LimitRow& row = row_of(kind);
+    kinds.value(row_of(kind).name, kind);
+  }
+  for (const LimitRow& row : kLimits) {
     limits.def_ro(row.name, row.value);
-    kinds.value(row.name, kind);
   }
   nb::class_<LimitRow>(m, "LimitRow", "A kind of limit that an axis of the drive may have.")
       .def_ro("name", &LimitRow::name)

@@ -12,6 +12,7 @@
 #include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/actuator/limit_kinds.hpp"
 #include "slipwise/actuator/measured_start.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 
@@ -22,21 +23,13 @@ constexpr int kMostPieces = 2000;     // of one ramp, however slow
 constexpr double kLongestRamp = 1e6;  // [s]; no drive takes longer
 
 void check(const AxisLimits& limits, const char* axis) {
-  const auto refuse = [&](const char* name, double value, const char* wanted) {
-    throw std::invalid_argument("the " + std::string(axis) + " axis's " + name + " is " + std::to_string(value) +
-                                "; give " + wanted + ", or leave it out");
-  };
-  if (std::isnan(limits.dead_band) || limits.dead_band < 0.0 || std::isinf(limits.dead_band)) {
-    refuse("dead band", limits.dead_band, "zero or more");
-  }
-  if (!(limits.saturation > 0.0)) {
-    refuse("top speed", limits.saturation, "more than zero");
-  }
-  if (!(limits.slew_rate_up > 0.0)) {
-    refuse("slew_rate_up", limits.slew_rate_up, "more than zero");
-  }
-  if (!(limits.slew_rate_down > 0.0)) {
-    refuse("slew_rate_down", limits.slew_rate_down, "more than zero");
+  for (const LimitRow& row : kLimits) {
+    const double value = limits.*row.value;
+    const bool least = AxisLimits{}.*row.value == 0.0;  // what limits nothing is the least of it, or infinite
+    if (!(least ? value >= 0.0 && std::isfinite(value) : value > 0.0)) {
+      throw std::invalid_argument("the " + std::string(axis) + " axis's " + row.name + " is " + std::to_string(value) +
+                                  "; give " + (least ? "zero or more" : "more than zero") + ", or leave it out");
+    }
   }
 }
 

@@ -116,7 +116,7 @@ TEST_CASE("what comes out until some moment does not depend on later commands") 
 TEST_CASE("limits that make no sense are refused with the axis and what to give") {
   const InputHistory commands = history({0.0}, {1.0}, {0.0});
   CHECK_THROWS_WITH_AS(limited_inputs(commands, {.yaw_rate = {.saturation = -1.0}}),
-                       doctest::Contains("yaw rate axis's top speed"), std::invalid_argument);
+                       doctest::Contains("yaw rate axis's saturation"), std::invalid_argument);
   CHECK_THROWS_AS(limited_inputs(commands, {.speed = {.dead_band = -0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(limited_inputs(commands, {.speed = {.slew_rate_up = 0.0}}), std::invalid_argument);
   CHECK_THROWS_AS(limited_inputs(commands, {.side = {.slew_rate_down = std::nan("")}}), std::invalid_argument);

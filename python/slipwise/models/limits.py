@@ -47,10 +47,10 @@ class LimitsSection(Section):
 
 def limits_section(search: _core.LimitSearch) -> LimitsSection:
     """Return what a search found, by axis and kind."""
-    found = {(limit.axis, limit.kind): limit for limit in search.found}
+    found = {(limit.axis, limit.kind.name): limit for limit in search.found}
 
     def learned(axis: str, kind: str) -> LearnedLimit | None:
-        limit = found.get((_CORE_AXES[axis], _core.LimitKind[kind]))
+        limit = found.get((_CORE_AXES[axis], kind))
         return None if limit is None else LearnedLimit(value=limit.value, std=limit.std)
 
     axes = {axis: AxisLimitsSection(**{kind: learned(axis, kind) for kind in KINDS}) for axis in AXES}

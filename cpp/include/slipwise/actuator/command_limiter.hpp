@@ -3,10 +3,10 @@
 // (derivations/actuator.md).
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "slipwise/actuator/axis_limit.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 
 namespace slipwise {
@@ -18,9 +18,7 @@ class AxisRamp {
   explicit AxisRamp(const AxisLimits& limits) : limits_(limits) {}
 
   /// What the axis makes of a command that is held for long.
-  double limited(double command) const {
-    return std::abs(command) < limits_.dead_band ? 0.0 : std::clamp(command, -limits_.saturation, limits_.saturation);
-  }
+  double limited(double command) const { return slipwise::limited(limits_, command); }
   void aim(double command) {
     target_ = limited(command);
     jump();

@@ -11,22 +11,26 @@
 
 namespace slipwise {
 
+/// Those that a search learns.
 enum class LimitKind : std::uint8_t { DeadBand, Saturation, SlewRateUp, SlewRateDown };
 inline constexpr std::array kLimitKinds{LimitKind::DeadBand, LimitKind::Saturation, LimitKind::SlewRateUp,
                                         LimitKind::SlewRateDown};
 
-/// A kind of limit, in the order of `LimitKind`.
+/// A kind of limit.
 struct LimitRow {
   const char* name;            ///< of the field, also in a model file
   double AxisLimits::* value;  ///< what is not limited has that of `AxisLimits{}`
   bool of_change;              ///< its unit is that of the axis over seconds
   const char* words;           ///< before the number in a sentence: "speed at most 0.5 m/s"
 };
-inline constexpr std::array<LimitRow, kLimitKinds.size()> kLimits{
-    {{.name = "dead_band", .value = &AxisLimits::dead_band, .of_change = false, .words = "dead band below"},
-     {.name = "saturation", .value = &AxisLimits::saturation, .of_change = false, .words = "at most"},
-     {.name = "slew_rate_up", .value = &AxisLimits::slew_rate_up, .of_change = true, .words = "acceleration at most"},
-     {.name = "slew_rate_down", .value = &AxisLimits::slew_rate_down, .of_change = true, .words = "braking at most"}}};
+/// Those of `LimitKind` in its order, and behind them those that are given alone.
+inline constexpr std::array kLimits{
+    LimitRow{.name = "dead_band", .value = &AxisLimits::dead_band, .of_change = false, .words = "dead band below"},
+    LimitRow{.name = "saturation", .value = &AxisLimits::saturation, .of_change = false, .words = "at most"},
+    LimitRow{
+        .name = "slew_rate_up", .value = &AxisLimits::slew_rate_up, .of_change = true, .words = "acceleration at most"},
+    LimitRow{
+        .name = "slew_rate_down", .value = &AxisLimits::slew_rate_down, .of_change = true, .words = "braking at most"}};
 
 inline const LimitRow& row_of(LimitKind kind) { return kLimits.at(static_cast<std::size_t>(kind)); }
 

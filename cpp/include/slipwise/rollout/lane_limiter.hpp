@@ -2,18 +2,17 @@
 // Limits of the drive in lanes: what dead-band, saturation and ramps leave of the commands of a block, piece by piece.
 #pragma once
 
+#include "slipwise/actuator/axis_limit.hpp"
 #include "slipwise/rollout/lane_actuator.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lanes.hpp"
 
 namespace slipwise {
 
-/// What is slower than the dead-band gives zero, what is faster than the saturation gives the saturation.
+/// What speed and yaw rate, or a side, aim at.
 template <typename Scalar, class Vector>
 SLIPWISE_LANES Vector aim(const RampLimits<Scalar>& limits, const Vector& command) {
-  const Vector saturation = Vector{} + limits.saturation;
-  const Vector passed = magnitude(command) < Vector{} + limits.dead_band ? Vector{} : command;
-  return larger(smaller(passed, saturation), -saturation);
+  return limited(limits, command);
 }
 template <typename Scalar, class Half>
 SLIPWISE_LANES Pair<Half> aim(const RampLimits<Scalar>& limits, const Pair<Half>& command) {
