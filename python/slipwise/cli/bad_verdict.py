@@ -10,14 +10,16 @@ if TYPE_CHECKING:
     from slipwise.models import Model
 
 
-def without_bad_input(model: Model, target: str) -> tuple[Model, Model | None]:
+def without_bad_input(out: Output, model: Model, target: str) -> tuple[Model, Model | None]:
     """Return what may be exported of a model; also what is to be refused, where that is all.
 
     Args:
+        out: where it is said that one input of two is left out.
         model: which may answer from two inputs, each with its verdict.
         target: a tool, or "all".
     """
     from slipwise.export.targets import find_target, for_target
+    from slipwise.models.inputs import MANY
 
     parts = [model.of_input(name) for name in model.inputs]
     if target != "all":
@@ -25,7 +27,14 @@ def without_bad_input(model: Model, target: str) -> tuple[Model, Model | None]:
     good = [part for part in parts if part.verdict.good]
     if not good:
         return model, parts[0]
-    return (model if len(good) == len(parts) else good[0].alone), None
+    if len(good) == len(parts):
+        return model, None
+    (bad,) = (part for part in parts if not part.verdict.good)
+    name = MANY[bad.content.input]
+    out.line(
+        f"What was learned from {name} is left out, since it is not good enough: --force exports it too."
+    )
+    return good[0].alone, None
 
 
 def say_refused(out: Output, model: Model, command: str) -> None:

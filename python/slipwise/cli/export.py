@@ -159,7 +159,7 @@ def export(
     learned = load_model(model, input=input_name)
     learned = learned if surface is None else on_surface(learned, surface)
     if not force:
-        learned, bad = without_bad_input(learned, target.value)
+        learned, bad = without_bad_input(out, learned, target.value)
         if bad is not None:
             say_refused(out, bad, "export")
             return 1

@@ -13,6 +13,8 @@ import yaml
 from cli.conftest import Result, left_in
 from sample_models import make_model, named
 
+from slipwise.models import Model
+
 Slipwise = Callable[..., Result]
 
 WHEEL = named("edd-2", lon__V=-0.1, ang__w=-0.3)
@@ -193,3 +195,37 @@ def test_a_file_of_nav2_is_shown_and_written(slipwise: Slipwise, folder: Path) -
     )
     assert slipwise("export", model, "--to", "c-header", "--merge", users).code == 2
     assert left_in(folder) == {"command.yaml", "nav2.yaml"}
+
+
+def both(*, good_commands: bool, good_wheels: bool) -> Model:
+    """Return a model of commands that answers from wheel speeds too."""
+    commands, wheels = (
+        make_model(replace(WHEEL, commands=from_commands, good=good)).content
+        for from_commands, good in ((True, good_commands), (False, good_wheels))
+    )
+    return Model(commands.model_copy(update={"other_input": wheels}))
+
+
+def test_a_model_of_both_inputs_gives_all_files_each_from_the_input_that_it_needs(
+    slipwise: Slipwise, folder: Path
+) -> None:
+    path = both(good_commands=True, good_wheels=True).save(folder / "both.yaml")
+    result = slipwise("export", path, "--to", "all", "--ros-distro", "jazzy", "-o", "config")
+    assert result.code == 0
+    assert {file.name for file in Path("config").iterdir()} == {*ALL_OF_WHEEL, "nav2_mppi.yaml"}
+    assert "For commands: robot-localization, c-header; --input wheel writes these for wheel speeds." in (
+        " ".join(result.out.split())
+    )
+    assert slipwise("export", path, "--to", "mppi", "--input", "wheels", "--ros-distro", "jazzy").code == 2
+
+
+def test_the_input_that_is_not_good_enough_is_left_out(slipwise: Slipwise, folder: Path) -> None:
+    path = both(good_commands=False, good_wheels=True).save(folder / "both.yaml")
+    result = slipwise("export", path, "--to", "all", "--ros-distro", "jazzy", "-o", "config")
+    assert result.code == 0
+    assert "What was learned from commands is left out, since it is not good enough" in result.out
+    assert {file.name for file in Path("config").iterdir()} == ALL_OF_WHEEL
+    assert slipwise("export", path, "--to", "mppi", "--ros-distro", "jazzy").code == 1
+    assert slipwise("export", path, "--to", "diff-drive", "--ros-distro", "jazzy").code == 0
+    path = both(good_commands=False, good_wheels=False).save(folder / "both.yaml")
+    assert slipwise("export", path, "--to", "all", "--ros-distro", "jazzy").code == 1
