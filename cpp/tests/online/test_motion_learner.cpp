@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "slipwise/online/motion_learner.hpp"
 #include "streamed_robot.hpp"
@@ -56,6 +57,30 @@ TEST_CASE("what is learned does not depend on how streams interleave within the 
       check_same(expected, learner.model());
     }
   }
+}
+
+TEST_CASE("a segment is learned before it is due, though measurements come rarely") {
+  LearnerSettings settings = learner_settings(false);
+  for (const char* name : {"drive-5", "odd-even-10", "thesis-15"}) {
+    settings.hypotheses.bases.push_back(named_basis(name));
+  }
+  MotionLearner learner(settings);
+  const Recording run = streamed_robot(3, 60.0);
+  std::vector<double> learned_at;
+  for (std::size_t i = 0; i < run.wheels.size(); i += 4) {
+    learner.push(WheelSample{run.wheels[i]});
+    if (i % 20 == 0) {
+      learner.push(run.poses[i / 2]);
+    }
+    learned_at.resize(learner.hypotheses().count(), run.wheels[i].t);
+  }
+  std::size_t segment = 0;
+  for (const LearnerEvent& event : learner.events()) {
+    if (event.kind == LearnerEvent::Kind::SegmentLearned && segment < learned_at.size()) {
+      CHECK(learned_at[segment++] < event.t + 0.9);  // at 1 s all that waits is learned at once
+    }
+  }
+  CHECK(segment > 40);
 }
 
 TEST_CASE("what is later than the latency is rejected and counted") {

@@ -13,6 +13,7 @@ from slipwise import _core
 from slipwise.calibration.coming import Coming
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.errors import SettingsError
 from slipwise.logs import Log, Run
 from slipwise.logs.findings.checks import findings_of
 from slipwise.segments import recording_of
@@ -64,6 +65,14 @@ def test_a_gyro_that_is_learned_from_and_turns_otherwise_makes_no_good_model() -
         found = learner.contradictions()
         assert [each.kind for each in found] == kinds
         assert all(each.spoils for each in found)
+
+
+def test_a_sensor_that_no_log_knows_is_refused_with_those_that_there_are() -> None:
+    learner = MotionLearner("wheel", SETTINGS, coming=Coming(positions=True))
+    learner.start_run("live")
+    learner.push_reading(0.0, "gyro_z", 0.1)
+    with pytest.raises(SettingsError, match="known are gyro_z"):
+        learner.push_reading(0.1, "gyro_x", 0.1)
 
 
 @pytest.mark.slow
