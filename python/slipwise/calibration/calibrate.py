@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.calibration.estimator_run import estimator_info
+from slipwise.calibration.gyro_clock import gyro_clock
 from slipwise.calibration.judge import Judged, Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement, too_short
 from slipwise.calibration.learned import Learned
@@ -104,6 +105,7 @@ def calibrate_by(
     found = found_contradictions(learned, windows.drive, (log, input_name, settings))
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     mounts = mounts_of(log.runs, settings.sensor_extrinsics.pose) if learned.sources else ()
+    gyro = gyro_clock(log.runs)
     placed = {mount.name for mount in mounts}
     return Calibration(
         model_of(content, log, found),
@@ -115,6 +117,7 @@ def calibrate_by(
             *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.judged),
             *(source.sentence(placed=source.name in placed) for source in learned.sources),
             *(mount.sentence() for mount in mounts),
+            *((gyro.sentence(),) if gyro is not None and gyro.sentence() else ()),
             *unused_measurements(log, settings, smooth=smooth),
             *unused_wheels(log, settings, learned.kept, input_name),
         ),
