@@ -26,7 +26,9 @@ _LATEST = 1.0  # s
 _GRID = np.arange(-_LATEST + 0.1, _LATEST, 0.1)  # s, where the search begins
 _LONGEST_STEP = 0.2  # s between rates
 _AROUND = np.arange(-2, 3) * 0.05  # s, over which a rate is a mean: the derivative must not be noise
+_FASTEST = 1e3  # rad/s; faster rates have another unit
 _ROUNDS = 4
+_WORST = 1e12  # condition, beyond which the drive tells nothing
 _ROUGH = 10  # windows by which the search begins
 _OUTLIER = 4.0  # times the usual error of a window, from which on it is left out
 _TURNS = 0.1  # rad, less of a window says nothing
@@ -93,7 +95,7 @@ def gyro_clock(runs: Sequence[Run]) -> GyroClock | None:
         sizes = np.array([np.sqrt(np.mean(rows**2)) for rows, _ in parts])
         kept = [part for part, size in zip(parts, sizes, strict=True) if size <= _OUTLIER * np.median(sizes)]
         information = sum((j.T @ j for _, j in kept), np.zeros((2, 2)))
-        if np.linalg.cond(information) > 1e12:
+        if not (np.isfinite(information).all() and np.linalg.cond(information) < _WORST):
             return None
         gradients = [j.T @ rows for rows, j in kept]
         state = state + np.linalg.solve(information, sum(gradients, np.zeros(2)))
@@ -114,6 +116,8 @@ def _windows(run: Run) -> list[_Window]:
     if poses.course or len(poses) < _FEWEST_POSES or len(rates) < _FEWEST_POSES:
         return []
     stamps, rate = rates[:, 0], rates[:, 1]
+    if not (np.abs(rate) < _FASTEST).all():
+        return []
     steps = np.diff(stamps)
     turned = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * steps))
     gaps = np.append(0, np.cumsum(steps > _LONGEST_STEP))

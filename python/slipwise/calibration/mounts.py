@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 
 X, Y, YAW, LATE = range(4)
 _WINDOW = 10.0  # s
+_FARTHEST_WAY = 1e4  # m within a window
 _FEWEST_POSES, _FEWEST_WINDOWS = 8, 6
 _LONGEST_STEP = 0.35  # s between poses of the first source, on a straight line between which others are
 _LATEST = 1.0  # s
@@ -153,7 +154,11 @@ def _mount(name: str, beside: str, runs: Sequence[Run], place: tuple[float, floa
 
 def _windows(run: Run, other: Poses, place: tuple[float, float, float]) -> list[_Window]:
     first = run.poses
-    if len(first) < _FEWEST_POSES or float(np.median(np.diff(first.t))) > _LONGEST_STEP:
+    if (
+        len(other) < _FEWEST_POSES
+        or len(first) < _FEWEST_POSES
+        or float(np.median(np.diff(first.t))) > _LONGEST_STEP
+    ):
         return []
     yaw = np.unwrap(first.yaw) - place[2]
     ahead, left = place[:2]
@@ -176,8 +181,14 @@ def _windows(run: Run, other: Poses, place: tuple[float, float, float]) -> list[
     return [
         _Window(base, halves, other.t[part], other.x[part], other.y[part], other.yaw[part])
         for part in parts
-        if inside[part].all()
+        if inside[part].all() and _moves(other.x[part], other.y[part])
     ]
+
+
+def _moves(x: Floats, y: Floats) -> bool:
+    """Whether positions are those of a robot that drives, and of numbers that can be reckoned with."""
+    way = float(np.hypot(np.ptp(x), np.ptp(y)))
+    return 0.0 < way < _FARTHEST_WAY
 
 
 def _left(window: _Window, state: Floats, noise: Floats, *, heading: bool) -> _Left:

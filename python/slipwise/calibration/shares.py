@@ -29,6 +29,8 @@ _KNOWN_PART = 0.9  # of a window's time, an input must be known
 _SAME = 1e-3  # s between the end of a window and the start of the next
 _DRIVEN = 0.05  # of the largest command, below which a window says nothing of small ones
 _CLEAR, _LARGE = 3.0, 0.1  # standard deviations, and part of the share, by which small commands differ
+_LARGEST = 100.0  # times what is commanded; more is of commands that are as good as none
+_TINY, _HUGE = 1e-6, 1e6  # m/s or rad/s; no robot is commanded less, or drives more
 _RUN, _START, _DURATION, _DISTANCE, _COURSE, _TURN, _START_YAW = 0, 1, 3, 4, 5, 6, 8
 _COMMANDS, _WHEELS = 9, 13  # columns of forward, sideways, rotation, known
 
@@ -85,7 +87,7 @@ def commanded_to_body(
     ahead, turned = _moved(rows, sensor_y, sensor_yaw)
     for axis, body, column in (("speed", ahead, 0), ("yaw_rate", turned, 2)):
         fit = _fit(rows[:, _COMMANDS + column] / duration, body / duration, _places(rows, _COMMANDS))
-        gain = _gain(fit) if len(fit) >= _FEWEST else 0.0
+        gain = 0.0 if _share(fit) is None else _gain(fit)
         if gain != 0.0:
             found[axis] = (fit.inputs @ (fit.coefficients() / gain), fit.outputs)
     return found
@@ -130,13 +132,17 @@ def _places(rows: Floats, first: int) -> Ints:
 
 
 def _fit(inputs: Floats, outputs: Floats, places: Ints) -> _Fit:
-    return _Fit(np.column_stack([inputs[places + tap] for tap in _TAPS]), outputs[places])
+    fit = _Fit(np.column_stack([inputs[places + tap] for tap in _TAPS]), outputs[places])
+    sane = (np.abs(fit.inputs) < _HUGE).all(axis=1) & (np.abs(fit.outputs) < _HUGE)
+    return fit if sane.all() else _Fit(fit.inputs[sane], fit.outputs[sane])
 
 
 def _share(fit: _Fit) -> Share | None:
-    if len(fit) < _FEWEST or not fit.inputs.any():
+    if len(fit) < _FEWEST or not np.abs(fit.inputs).max() > _TINY:
         return None
     value = _gain(fit)
+    if not abs(value) < _LARGEST:
+        return None
     fewer = value - _gain(_Fit(fit.inputs[:, 1:], fit.outputs))  # what the oldest commands make of it
     return Share(value=value, std=float(np.hypot(fit.scatter(_gain), fewer)))
 
