@@ -42,6 +42,9 @@ JumpingChannel jumping(const Basis& basis, Channel channel, std::string_view mai
   return found;
 }
 
+/// How much a segment counts whose neighbours err alike.
+double part_of_alike(double alike) { return std::pow(std::max(alike, 1.0), -kTempered); }
+
 /// Seconds of motion at the reference speeds.
 double seconds_of_motion(const SegmentPath& path, const ReferenceSpeeds& speeds) {
   double seconds = 0.0;
@@ -258,7 +261,7 @@ SlipChange BranchBank::look_for_change() {
 /// By the linearisation at `mean`, where the residual is `innovation`. Neighbours that err alike count for less.
 void BranchBank::weigh(const SegmentLinearization& at, const Eigen::VectorXd& mean, const Rows& innovation,
                        const RowsCovariance& noise, double alike) {
-  const double rate = std::pow(std::max(alike, 1.0), -kTempered);
+  const double rate = part_of_alike(alike);
   Eigen::VectorXd scores(branches_.weights().size());
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     const Estimate& known = branches_[i].estimate;
@@ -300,8 +303,8 @@ IekfUpdate BranchBank::learn(const MotionModel& model, const BranchSegment& driv
   const Rows innovation = error_of(segment, at);
   const RowsCovariance covariance = innovation_covariance(state.estimate.covariance, at.by_parameter, noise);
   const double motion = seconds_of_motion(at.path, driven.speeds);
-  if (motion > kMoves * (segment.end - segment.start)) {
-    bear(driven.prior, driven.unit, -std::expm1(-motion / kMotion));
+  if (motion > kMoves * (segment.end - segment.start)) {  // slip that lasts is no jump
+    bear(driven.prior, driven.unit, -std::expm1(-motion / kMotion * part_of_alike(driven.alike)));
   }
   ++segments_;
   weigh(at, mean, innovation, noise, driven.alike);

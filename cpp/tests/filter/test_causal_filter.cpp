@@ -142,6 +142,7 @@ SquaredSigmas squared_sigmas(bool adapt, int drives) {
     settings.noise.adapt = adapt;
     if (!adapt) {
       settings.noise.shape = kTrueNoise;
+      settings.branches.follow = false;  // of branches, those that prove nothing are not reported
     }
     CausalFilter filter(model, settings);
     for (const Segment& segment : drive.segments) {
