@@ -92,3 +92,16 @@ def test_wheels_that_teach_nothing_are_said_and_leave_the_commands() -> None:
         assert len(said) == 1, found.notes
         assert why in said[0], said
     assert not any("No model of its own" in note for note in alone.notes)
+
+
+def test_a_model_of_commands_says_why_it_does_not_use_the_wheel_speeds() -> None:
+    def said(**settings: object) -> list[str]:
+        notes = calibrate(simulated_log(DRIVE), input="command", settings=sw.make_settings(settings)).notes
+        return [note for note in notes if note.startswith("From commands, wheel speeds are not used")]
+
+    (named,) = said(basis="edd-2")
+    assert "only basis auto also learns by way of the wheels, and it is edd-2" in named
+    (left_out,) = said(auto={"structures": ["joint", "baseline"]})
+    assert "auto.structures leaves cascaded out" in left_out
+    used = calibrate(simulated_log(DRIVE), input="command").model.content.response
+    assert bool(said()) != used

@@ -229,3 +229,12 @@ def test_the_input_that_is_not_good_enough_is_left_out(slipwise: Slipwise, folde
     assert slipwise("export", path, "--to", "diff-drive", "--ros-distro", "jazzy").code == 0
     path = both(good_commands=False, good_wheels=False).save(folder / "both.yaml")
     assert slipwise("export", path, "--to", "all", "--ros-distro", "jazzy").code == 1
+
+
+def test_show_says_both_inputs_or_either(slipwise: Slipwise, folder: Path) -> None:
+    path = both(good_commands=True, good_wheels=True).save(folder / "both.yaml")
+    shown, wheels = slipwise("show", path), slipwise("show", path, "--input", "wheels")
+    assert "learned from commands" in shown.out
+    assert "The same file answers from wheel speeds too" in shown.out
+    assert "learned from wheels" in wheels.out
+    assert "The same file" not in wheels.out
