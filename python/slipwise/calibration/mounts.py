@@ -197,38 +197,8 @@ def _left(window: _Window, state: Floats, noise: Floats, *, heading: bool) -> _L
     pose = window.first.at(at)
     cos, sin = np.cos(pose[:, 2]), np.sin(pose[:, 2])
     arm = np.column_stack((cos * state[X] - sin * state[Y], sin * state[X] + cos * state[Y]))
-    seen = pose[:, :2] + arm
-    turned = pose[:, 2] + state[YAW]
-    measured = np.column_stack((window.x, window.y))
-    centre, goal = measured.mean(axis=0), seen.mean(axis=0)
-    flat = (measured - centre, seen - goal)
-    cross = (flat[0][:, 0] * flat[1][:, 1] - flat[0][:, 1] * flat[1][:, 0]).sum()
-    turn = float(np.arctan2(cross, (flat[0] * flat[1]).sum()))
-    if heading:
-        turn = float(np.angle(np.exp(1j * (turned - window.yaw)).mean()))
-    count, zero = len(window.t), np.zeros(len(window.t))
-    columns: tuple[Floats, ...] = ()
-    for _ in range(3):  # the turn of the frame is no linear parameter
-        c, s = np.cos(turn), np.sin(turn)
-        laid = flat[0] @ np.array([[c, s], [-s, c]]) + goal
-        rows = [(laid - seen)[:, 0] / noise[0], (laid - seen)[:, 1] / noise[0]]
-        away = laid - goal
-        ones = np.ones(count) / noise[0]
-        columns = (
-            np.concatenate((ones, zero)),
-            np.concatenate((zero, ones)),
-            np.concatenate((-away[:, 1], away[:, 0])) / noise[0],
-        )
-        if heading:
-            rows.append(np.angle(np.exp(1j * (window.yaw + turn - turned))) / noise[1])
-            columns = (
-                np.append(columns[0], zero),
-                np.append(columns[1], zero),
-                np.append(columns[2], np.ones(count) / noise[1]),
-            )
-        frame = np.column_stack(columns)
-        step = np.linalg.lstsq(frame, np.concatenate(rows), rcond=None)[0]
-        turn -= float(step[2])
+    seen, turned = pose[:, :2] + arm, pose[:, 2] + state[YAW]
+    residual, frame = _laid(window, seen, turned if heading else None, noise)
     q, _ = np.linalg.qr(frame)
 
     def without_frame(rows: Floats) -> Floats:
@@ -237,10 +207,38 @@ def _left(window: _Window, state: Floats, noise: Floats, *, heading: bool) -> _L
     one, other = (
         without_frame(_derivatives(half, at, state, noise, heading=heading)) for half in window.halves
     )
-    residual = np.concatenate(rows)
-    headings = np.arange(len(residual)) >= 2 * count
+    headings = np.arange(len(residual)) >= 2 * len(at)
     information = 0.5 * (one.T @ other + other.T @ one)
     return _Left(without_frame(residual), 0.5 * (one + other), information, headings)
+
+
+def _laid(window: _Window, seen: Floats, turned: Floats | None, noise: Floats) -> tuple[Floats, Floats]:
+    """Lay a window's poses on where its sensor was seen [N, 2], and on headings [N] where there are some.
+
+    Returns what is left, over its noise, and its derivatives by the frame: two shifts and a turn.
+    """
+    measured = np.column_stack((window.x, window.y))
+    goal = seen.mean(axis=0)
+    flat, target = measured - measured.mean(axis=0), seen - goal
+    cross = (flat[:, 0] * target[:, 1] - flat[:, 1] * target[:, 0]).sum()
+    turn = float(np.arctan2(cross, (flat * target).sum()))
+    if turned is not None:
+        turn = float(np.angle(np.exp(1j * (turned - window.yaw)).mean()))
+    count = len(window.t)
+    rows, frame = np.empty(0), np.empty((0, 3))
+    for _ in range(3):  # the turn of the frame is no linear parameter
+        c, s = np.cos(turn), np.sin(turn)
+        laid = flat @ np.array([[c, s], [-s, c]])
+        rows = (laid - target).T.ravel() / noise[0]
+        frame = np.zeros((2 * count, 3))
+        frame[:count, 0] = frame[count:, 1] = 1.0
+        frame[:, 2] = np.concatenate((-laid[:, 1], laid[:, 0]))
+        frame /= noise[0]
+        if turned is not None:
+            rows = np.append(rows, np.angle(np.exp(1j * (window.yaw + turn - turned))) / noise[1])
+            frame = np.vstack((frame, np.tile((0.0, 0.0, 1.0 / noise[1]), (count, 1))))
+        turn -= float(np.linalg.lstsq(frame, rows, rcond=None)[0][2])
+    return rows, frame
 
 
 def _derivatives(first: _First, at: Floats, state: Floats, noise: Floats, *, heading: bool) -> Floats:
