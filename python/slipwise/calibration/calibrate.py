@@ -215,6 +215,7 @@ def learned_by(learned: LearnedLog) -> Learned:
         learned.sources,
         learned.body,
         learned.evidence,
+        learned.simpler,
     )
 
 
