@@ -146,12 +146,6 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     assert f"has π = {average.largest_basis:g}" in derivations
     assert f"Above {iekf.gate:g} the window is left out. Above {iekf.huber:g}²" in derivations
     assert f"by less than {iekf.tolerance:g}" in derivations
-    change = average.change
-    assert f"above log odds of {change.threshold:g}" in derivations
-    assert f"after {change.warm_up} windows in which" in derivations
-    assert f"`longest` = {change.longest} windows ago" in derivations
-    assert f"a fraction f = {change.forget:g} of their prior variance" in derivations
-    assert f"compete for {change.trial} windows" in derivations
 
 
 def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
