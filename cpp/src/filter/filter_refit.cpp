@@ -16,7 +16,7 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kSlice = 2;   // segments that are linearised at a time
+constexpr std::size_t kSlice = 6;   // segments that are linearised at a time, as long as one of them is learned
 SLIPWISE_TUNING(kTolerance, 0.03);  // of -2 log posterior: a sixth of a standard deviation
 
 }  // namespace
@@ -123,8 +123,9 @@ bool FilterRefit::advance(std::span<const DrivenSegment> segments) {
       if (done_ < segments.size()) {
         state_.learn(model_, segments[done_].inputs, segments[done_].segment, noise_, iekf_);
         ++done_;
+        return true;
       }
-      return done_ < segments.size();
+      return false;
     case Phase::Failed:
       break;
   }

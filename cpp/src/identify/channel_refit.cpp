@@ -13,7 +13,8 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kSlice = 24;    // windows that are walked over at a time
+constexpr std::size_t kSlice = 96;    // windows that are walked over at a time,
+constexpr std::size_t kFollowed = 4;  // or learned
 SLIPWISE_TUNING(kTolerance, 0.1);     // what a step has to gain of -2 log posterior
 SLIPWISE_TUNING(kMostPasses, 12);     // with more windows it goes on from there
 SLIPWISE_TUNING(kMostElsewhere, 10);  // the same from a start elsewhere
@@ -98,12 +99,13 @@ bool ChannelRefit::advance(std::span<const ChannelWindow> past) {
     if (!fit_->advance(past.first(count_))) {
       end_fit();
     }
-    return fit_ || done_ < past.size();
+    return true;
   }
-  if (done_ < past.size()) {
-    channel_.learn(past[done_++]);
+  const bool more = done_ < past.size();
+  for (const std::size_t end = std::min(done_ + kFollowed, past.size()); done_ < end; ++done_) {
+    channel_.learn(past[done_]);
   }
-  return done_ < past.size();
+  return more;
 }
 
 }  // namespace slipwise

@@ -23,16 +23,11 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPiece = 0.01;             // [s] of stamps in which a piece of what waits is learned,
-constexpr double kMostPieces = 8;           // and as many at a push at most: some 500 us
-constexpr int kSlices = 8;                  // of refits that a push may do where no segment waits: some 100 us
+constexpr double kPieces = 12.0;            // that it takes to learn a segment, or so
+constexpr double kMostPieces = 8;           // that a push learns of what waits, unless they are due
+constexpr int kSlices = 2;                  // of refits that a push does where no segment waits: some 100 us each
 constexpr std::size_t kMostWeighed = 1024;  // predictions of all bases that are kept
 constexpr double kNever = std::numeric_limits<double>::infinity();
-
-/// Of what waits, where so much time passed between stamps [s]: infinite at first.
-int pieces_in(double passed) {
-  return passed > kPiece ? static_cast<int>(std::ceil(std::min(passed / kPiece, kMostPieces))) : 1;
-}
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
 
@@ -146,9 +141,23 @@ void MotionLearner::push(const Measurement& measurement) {
       std::holds_alternative<Tilt>(sample)) {
     localizer_.forget_without(t);
   }
-  int pieces = pieces_in(stream_.newest() - before);
+  int pieces = pieces_now(stream_.newest() - before);
   while (pieces-- > 0 && work()) {
   }
+}
+
+/// Of what waits, so that it is learned evenly until it is due, where `passed` [s] lie between the stamps of pushes.
+int MotionLearner::pieces_now(double passed) const {
+  if (waiting_.empty() || !(passed > 0.0) || std::isinf(passed)) {
+    return 1;
+  }
+  const double left = known_at(waiting_.front()) + kReady - stream_.newest();
+  double pieces = 0.0;
+  for (const StreamItem& item : waiting_) {
+    const bool is_segment = std::holds_alternative<DrivenSegment>(item) || std::holds_alternative<SlipSegment>(item);
+    pieces += is_segment ? kPieces : 1.0;
+  }
+  return static_cast<int>(std::ceil(std::clamp(pieces * passed / std::max(left, passed), 1.0, kMostPieces)));
 }
 
 /// Takes over what the stream has complete. What should have been learned by now is learned at once, so that results

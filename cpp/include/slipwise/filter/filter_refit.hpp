@@ -26,8 +26,7 @@ class FilterRefit {
   FilterRefit(MotionModel model, Estimate before, FilterState now, const CausalFilterSettings& settings,
               std::size_t count);
 
-  /// Does a slice of the work on `segments`: the first that were kept, and those since. Whether there is more to do
-  /// now.
+  /// Does a slice of the work on `segments`: the first that were kept, and those since. Whether there was any.
   bool advance(std::span<const DrivenSegment> segments);
   /// The present estimate; empty if the fit failed.
   std::optional<FilterState> result() &&;

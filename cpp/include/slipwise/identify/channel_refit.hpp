@@ -54,7 +54,7 @@ class ChannelRefit {
   /// `count` windows have been learned by `channel`.
   ChannelRefit(const ActuatorChannel& channel, std::size_t count);
 
-  /// Does a slice of the work on `past` windows: the first, and those since. Whether there is more to do now.
+  /// Does a slice of the work on `past` windows: the first, and those since. Whether there was any.
   bool advance(std::span<const ChannelWindow> past);
   /// The estimate after all windows; the refit must have no more to do.
   const ActuatorChannel& result() const { return channel_; }

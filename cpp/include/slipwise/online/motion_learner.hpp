@@ -168,6 +168,7 @@ class MotionLearner {
  private:
   void take_in();
   bool work();
+  int pieces_now(double passed) const;
   bool learn_front();
   void learn_source();
   void reject(const Rejected& rejected);
