@@ -184,9 +184,15 @@ bool BranchBank::change_prior(const Eigen::VectorXd& old_std, const Eigen::Vecto
   return true;
 }
 
+/// Once, until something is learned.
 void BranchBank::expect_jump(const Estimate& prior, const Eigen::VectorXd& unit, double probability) {
+  const auto just_born = [&](const Branch& branch) { return branch.born == segments_ && branch.number > known_; };
+  if (std::ranges::any_of(branches_.keys(), just_born)) {
+    return;
+  }
   bear(prior, unit, probability);
   branches_.weigh(Eigen::VectorXd::Zero(branches_.weights().size()));
+  prune();
 }
 
 /// With this probability, slip jumped just before the next segment.

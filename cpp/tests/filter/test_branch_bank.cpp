@@ -80,6 +80,23 @@ TEST_CASE("where slip stays, it is known as well as if it never jumped") {
   CHECK(followed < 1.05 * fixed);
 }
 
+TEST_CASE("a change that is expected makes slip less sure, once until something is learned, and is followed sooner") {
+  const MotionModel model(named_basis("edd-2"), {});
+  CausalFilter told = filter_of(model, true);
+  learn(told, driven(model, -0.3, 107, 60));
+  CausalFilter alone = told;
+  const double before = told.reported().covariance(kYaw, kYaw);
+  told.expect_change();
+  const Eigen::MatrixXd once = told.reported().covariance;
+  CHECK(once(kYaw, kYaw) > 4.0 * before);
+  told.expect_change();
+  CHECK(told.reported().covariance == once);
+  const auto after = driven(model, -0.4, 108, 2);
+  learn(told, after);
+  learn(alone, after);
+  CHECK(std::abs(told.estimate().mean[kYaw] + 0.4) < std::abs(alone.estimate().mean[kYaw] + 0.4));
+}
+
 TEST_CASE("a basis without slip that every terrain shows has no branches, and learns as without") {
   for (const Basis& basis : {Basis("none", {}, {}, {}), Basis("odd", std::vector<std::string>{"V*V"}, {}, {})}) {
     const MotionModel model(basis, {});
