@@ -96,7 +96,6 @@ void MotionLearner::end_run() {
   take_in();
   work_through();
   finish_sources();
-  weigh_before(kNever);
 }
 
 MotionLearner MotionLearner::completed() const {
@@ -119,6 +118,7 @@ double MotionLearner::counted(double stamp) {
     stream_.count_from(clock_.stamp(0.0));
   }
   if (set_again) {
+    weigh_before(kNever);
     known_.restart_clock();
     errors_.restart_clock();
     before_run_ = -kNever;
