@@ -22,15 +22,16 @@ def axis_shares(model: Model) -> dict[str, AxisShares]:
 def share_sentences(model: Model) -> list[str]:
     """Say what arrives of commands over the log, and where it is not in proportion."""
     found = {axis: said for axis, said in axis_shares(model).items() if _known(said.arrives)}
-    parts = [_of_axis(said, AXES[axis][0]) for axis, said in found.items()]
+    turn = AXES["yaw_rate"][0] if model.content.wheelbase is None else "turn"  # which steering commands
+    names = {"speed": AXES["speed"][0], "yaw_rate": turn}
+    parts = [_of_axis(said, names[axis]) for axis, said in found.items()]
     sentences = [f"Over this log, {' and '.join(parts)} arrive."] if parts else []
-    apart = [text for axis, said in found.items() for text in _out_of_proportion(said, axis)]
+    apart = [text for axis, said in found.items() for text in _out_of_proportion(said, axis, names[axis])]
     return [*sentences, f"That is no one number: {'; '.join(apart)}."] if apart else sentences
 
 
-def _out_of_proportion(said: AxisShares, axis: str) -> list[str]:
-    name, unit = AXES[axis]
-    texts = []
+def _out_of_proportion(said: AxisShares, axis: str, name: str) -> list[str]:
+    texts, unit = [], AXES[axis][1]
     if said.below is not None and said.small is not None and said.large is not None:
         size = f"{number_text(said.below, 2)} {unit}"
         texts.append(

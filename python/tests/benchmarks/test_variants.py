@@ -60,12 +60,12 @@ def test_a_constant_needs_a_build_of_its_own(data: Path) -> None:
 
 def test_numbers_are_multiplied_and_whole_ones_stay_whole() -> None:
     core = _core.LearnerSettings()
-    scaled(core, "hypotheses.average.change.longest", 0.4)
+    scaled(core, "hypotheses.average.surfaces.trial", 0.4)
     scaled(core, "hypotheses.average.weighting.fraction", 2.0)
     scaled(core, "disturbance.time_constants", 0.5)
     fresh = _core.LearnerSettings()
-    assert core.hypotheses.average.change.longest == round(0.4 * fresh.hypotheses.average.change.longest)
+    assert core.hypotheses.average.surfaces.trial == round(0.4 * fresh.hypotheses.average.surfaces.trial)
     assert core.hypotheses.average.weighting.fraction == 2.0 * fresh.hypotheses.average.weighting.fraction
     assert core.disturbance.time_constants == [0.5 * t for t in fresh.disturbance.time_constants]
-    scaled(core, "hypotheses.average.change.longest", 1e-9)
-    assert core.hypotheses.average.change.longest == 1
+    scaled(core, "hypotheses.average.surfaces.trial", 1e-9)
+    assert core.hypotheses.average.surfaces.trial == 1
