@@ -92,8 +92,6 @@ void bind_settings(nb::module_& m) {
   nb::class_<WeightingSettings>(m, "WeightingSettings")
       .def(nb::init<>())
       .def_rw("learning_rate", &WeightingSettings::learning_rate)
-      .def_rw("slowing", &WeightingSettings::slowing)
-      .def_rw("ahead_rate", &WeightingSettings::ahead_rate)
       .def_rw("fraction", &WeightingSettings::fraction);
   nb::class_<ModelAverageSettings>(m, "ModelAverageSettings")
       .def(nb::init<>())

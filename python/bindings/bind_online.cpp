@@ -23,19 +23,6 @@ using namespace nb::literals;
 namespace slipwise::bindings {
 namespace {
 
-/// [N, bases + 1] errors of all bases and of their average; the predictions of fewer bases are left out.
-Eigen::MatrixXd weighed(const LearnedModel& model, Eigen::VectorXd BasisErrors::* errors) {
-  const Eigen::Index columns = model.known.motion->basis_weights.size() + 1;
-  Eigen::MatrixXd rows(std::ssize(model.weighed), columns);
-  Eigen::Index count = 0;
-  for (const BasisErrors& each : model.weighed) {
-    if ((each.*errors).size() == columns) {
-      rows.row(count++) = (each.*errors).transpose();
-    }
-  }
-  return rows.topRows(count);
-}
-
 void bind_settings(nb::module_& m) {
   nb::class_<SegmentRules>(m, "SegmentRules", "When two poses and the inputs between them make a segment.")
       .def(nb::init<>())
@@ -53,7 +40,6 @@ void bind_settings(nb::module_& m) {
       .def_rw("unknown_after", &StreamSettings::unknown_after)
       .def_rw("latency", &StreamSettings::latency)
       .def_rw("horizons", &StreamSettings::horizons)
-      .def_rw("weighed", &StreamSettings::weighed)
       .def_rw("embargo", &StreamSettings::embargo)
       .def_rw("sensor", &StreamSettings::sensor)
       .def_rw("car", &StreamSettings::car)
@@ -151,8 +137,6 @@ void bind_results(nb::module_& m) {
       .def_ro("segments", &LearnedModel::segments)
       .def_ro("rejected", &LearnedModel::rejected)
       .def_ro("car", &LearnedModel::car)
-      .def_prop_ro("weighed_position", [](const LearnedModel& model) { return weighed(model, &BasisErrors::position); })
-      .def_prop_ro("weighed_heading", [](const LearnedModel& model) { return weighed(model, &BasisErrors::heading); })
       .def_ro("evidence", &LearnedModel::evidence);
 }
 

@@ -25,14 +25,8 @@ double HypothesisWeights::log_evidence() const {
 
 void HypothesisWeights::learn(const Eigen::VectorXd& log_scores, const WeightingSettings& settings) {
   weights_ = updated_weights(weights_, log_scores, prior_ / prior_.sum(), settings, observed_);
-  evidence_ += settings.rate_after(observed_) * log_scores;
+  evidence_ += settings.learning_rate * log_scores;
   ++observed_;
-}
-
-void HypothesisWeights::sharpen(const Eigen::VectorXd& log_factors) {
-  const Eigen::VectorXd heavier = weights_.array() * (log_factors.array() - log_factors.maxCoeff()).exp();
-  weights_ = heavier / sum_of(heavier);
-  evidence_ += log_factors;
 }
 
 void HypothesisWeights::weigh(const Eigen::VectorXd& log_factors) {

@@ -23,7 +23,7 @@ Eigen::VectorXd updated_weights(const Eigen::VectorXd& weights, const Eigen::Vec
   // prediction.
   const double fraction = std::min(settings.fraction, 1.0 / static_cast<double>(observed + 1));
   const Eigen::ArrayXd shared = (1.0 - fraction) * weights.array() + fraction * prior.array();
-  const Eigen::ArrayXd tempered = settings.rate_after(observed) * (log_scores.array() - log_scores.maxCoeff());
+  const Eigen::ArrayXd tempered = settings.learning_rate * (log_scores.array() - log_scores.maxCoeff());
   const Eigen::VectorXd heavier = shared * tempered.exp();
   return heavier / heavier.sum();
 }

@@ -87,13 +87,6 @@ ScoredSegment CascadedModel::predict(const DrivenSegment& segment) {
   return score_.score(model_, posterior_->estimate, segment.inputs, segment.segment);
 }
 
-Eigen::MatrixXd CascadedModel::means() const {
-  const Eigen::MatrixXd slip = slip_.means();
-  Eigen::MatrixXd all = posterior_->estimate.mean.replicate(1, slip.cols());
-  all(places_of_slip_, Eigen::all) = slip;
-  return all;
-}
-
 void CascadedModel::refresh() {
   const AverageState slip = slip_.state();
   const Eigen::Index size = model_.size();

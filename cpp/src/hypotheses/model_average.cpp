@@ -172,27 +172,6 @@ AverageState ModelAverage::state() const {
   return state;
 }
 
-Eigen::MatrixXd ModelAverage::means() const {
-  const auto bases = static_cast<Eigen::Index>(places_.size());
-  Eigen::MatrixXd means = Eigen::MatrixXd::Zero(model_.size(), bases);
-  const Eigen::VectorXd together = basis_weights();
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    const Eigen::Index basis = static_cast<Eigen::Index>(i) % bases;
-    const double part = filters_.weights()[static_cast<Eigen::Index>(i)] / together[basis];
-    const std::vector<Eigen::Index>& places = places_[static_cast<std::size_t>(basis)];
-    if (!places.empty()) {
-      means(places, basis) += part * filters_[i].estimate().mean;
-    }
-  }
-  return means;
-}
-
-void ModelAverage::weigh(const Eigen::VectorXd& log_scores) {
-  if (!trial_ && log_scores.size() == std::ssize(places_)) {
-    filters_.sharpen(settings_.weighting.ahead_rate * log_scores);
-  }
-}
-
 /// The mixture of filters, the bases of one side after the other, by their weights.
 AverageState ModelAverage::state_of(std::span<const CausalFilter> filters, const Eigen::VectorXd& weights) const {
   const Eigen::Index size = model_.size();

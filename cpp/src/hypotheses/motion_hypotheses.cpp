@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -51,15 +50,6 @@ std::vector<Basis> chosen(const std::vector<Basis>& bases, const std::vector<Eig
   return few;
 }
 
-/// Segments of commands are longer than those of wheel speeds, and their errors repeat less: the rate stays.
-ModelAverageSettings averaging_of(const HypothesisSettings& settings) {
-  ModelAverageSettings average = settings.average;
-  if (settings.dynamics) {
-    average.weighting.slowing = std::numeric_limits<double>::infinity();
-  }
-  return average;
-}
-
 }  // namespace
 
 std::vector<Basis> averaged_bases() {
@@ -77,7 +67,7 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
               .clock_offset = settings.clock_offset && !settings.dynamics,
               .sensor_extrinsics = settings.sensor_extrinsics,
               .wheelbase = settings.dynamics ? settings.wheelbase : 0.0},
-             settings.filter, averaging_of(settings)),
+             settings.filter, settings.average),
       baseline_(settings.filter.noise),
       bank_(settings.average.surfaces) {
   const auto attempt = [&](Structure structure) { tried_.add(structure, kPrior[index(structure)]); };
@@ -89,7 +79,7 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
         "auto", chosen(settings.bases, direct_bases_),
         ActuatorParameters{
             .sensor_extrinsics = settings.sensor_extrinsics, .delays = true, .wheelbase = settings.wheelbase},
-        settings.filter, averaging_of(settings));
+        settings.filter, settings.average);
   }
   if (settings.baseline) {
     attempt(Structure::Baseline);
@@ -244,7 +234,6 @@ void MotionHypotheses::update_weights() {
   }
   WeightingSettings weighting = settings_.average.weighting;
   weighting.learning_rate *= kPatience;
-  weighting.slowing = std::numeric_limits<double>::infinity();
   tried_.learn(common_log_scores(full / full.sum(), predicted_), weighting);
 }
 

@@ -121,7 +121,7 @@ void SegmentStream::emit_learned(const std::vector<SegmentCut>& cuts) {
 void SegmentStream::emit_targets(std::size_t horizon, const std::vector<SegmentCut>& cuts) {
   for (const SegmentCut& cut : cuts) {
     if (!cut.rejected) {
-      const double length = horizon < settings_.horizons.size() ? settings_.horizons[horizon] : settings_.weighed;
+      const double length = settings_.horizons[horizon];
       TargetSegment target{horizon, driven(cut, !settings_.from_commands, now_, length)};
       if (car_ && settings_.from_commands) {
         const double known = cut.first.t - std::max(length, kReady);

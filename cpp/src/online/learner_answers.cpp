@@ -188,7 +188,6 @@ LearnedModel MotionLearner::model() const {
                        .segments = complete.hypotheses_.count(),
                        .rejected = complete.log_.rejected(),
                        .car = complete.stream_.car_curves(),
-                       .weighed = complete.weighed_,
                        .evidence = complete.stream_.evidence()};
   learned.known.until = clock_.stamp(learned.known.until);
   const double spacing = complete.stream_.wheel_interval();

@@ -32,7 +32,6 @@ Knowledge MotionLearner::now_known(double until) const {
       .motion = motion,
       .slip = motion->structure == Structure::Baseline ? hypotheses_.slip_posterior() : motion,
       .disturbance = std::make_shared<const DisturbanceFilter>(disturbance_),
-      .candidates = std::make_shared<const std::vector<CandidateMeans>>(hypotheses_.candidates()),
       .sources = settings_.stream.sources.empty() ? nullptr : std::make_shared<const SourceNoise>(sources_.noise())};
 }
 

@@ -194,8 +194,8 @@ void LoadedValues::check(Type<KnotCurve> /*type*/, const KnotCurve& value) {
 void LoadedValues::check(Type<StreamSettings> /*type*/, const StreamSettings& value) {
   const auto is_length = [](double seconds) { return seconds > 0.0 && seconds < kLongest; };
   require(is_length(value.segment_length) && std::ranges::all_of(value.horizons, is_length) &&
-              is_length(value.weighed) && value.unknown_after >= 0.0 && value.latency >= 0.0 &&
-              value.latency < kLongest && (!value.stride || is_length(*value.stride)) &&
+              value.unknown_after >= 0.0 && value.latency >= 0.0 && value.latency < kLongest &&
+              (!value.stride || is_length(*value.stride)) &&
               (!value.embargo || (*value.embargo >= 0.0 && *value.embargo < kLongest)),
           "a segment has no length");
 }

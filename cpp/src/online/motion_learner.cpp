@@ -23,10 +23,9 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPieces = 12.0;            // that it takes to learn a segment, or so
-constexpr double kMostPieces = 8;           // that a push learns of what waits, unless they are due
-constexpr int kSlices = 2;                  // of refits that a push does where no segment waits: some 100 us each
-constexpr std::size_t kMostWeighed = 1024;  // predictions of all bases that are kept
+constexpr double kPieces = 12.0;   // that it takes to learn a segment, or so
+constexpr double kMostPieces = 8;  // that a push learns of what waits, unless they are due
+constexpr int kSlices = 2;         // of refits that a push does where no segment waits: some 100 us each
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
@@ -49,7 +48,7 @@ DisturbanceFilter disturbance_of(const LearnerSettings& settings) {
 
 /// Of the knowledge before that one, nothing is asked [s].
 double longest_back(const StreamSettings& settings) {
-  double longest = std::max(kRecent * settings.segment_length, 3.0 * settings.weighed);
+  double longest = kRecent * settings.segment_length;
   for (const double horizon : settings.horizons) {
     longest = std::max(longest, 2.0 * horizon + std::max(horizon, settings.age_of_known(horizon)));
   }
@@ -118,7 +117,6 @@ double MotionLearner::counted(double stamp) {
     stream_.count_from(clock_.stamp(0.0));
   }
   if (set_again) {
-    weigh_before(kNever);
     known_.restart_clock();
     errors_.restart_clock();
     before_run_ = -kNever;
@@ -217,17 +215,12 @@ bool MotionLearner::learn_front() {
                             return more;
                           },
                           [&](const TargetSegment& target) {
-                            if (target.horizon < settings_.stream.horizons.size()) {
-                              judge(target);
-                            } else {
-                              to_weigh_.push_back(target);
-                            }
+                            judge(target);
                             return false;
                           },
                           [](const SourceSegment& /*of another source*/) { return false; },
                           [&](const DrivenSegment& segment) {
                             if (!started_) {
-                              weigh_before(segment.segment.end);
                               learn_disturbance(segment);
                               hypotheses_.start(segment, stream_.wheels_known());
                               return true;
@@ -332,31 +325,6 @@ void MotionLearner::judge(const TargetSegment& target) {
                         .learned_until = clock_.stamp(at_start ? segment.start : std::min(used, segment.start))});
   errors_.keep(prediction);
   log_.say({.kind = LearnerEvent::Kind::HeldOut, .run = runs_, .t = segment.end, .prediction = prediction}, clock_);
-}
-
-/// Stretches count before the first segment that ends later, so that it does not matter when they came.
-void MotionLearner::weigh_before(double t) {
-  while (!to_weigh_.empty() && later(t, to_weigh_.front().driven.segment.end)) {
-    weigh(to_weigh_.front());
-    to_weigh_.pop_front();
-  }
-}
-
-/// Weighs bases and structures by what they would have predicted of a stretch, under the covariance that predictions
-/// have.
-void MotionLearner::weigh(const TargetSegment& target) {
-  const DrivenSegment& driven = target.driven;
-  const Knowledge& known = known_.of_segments_until(driven.segment.start);
-  const SlipNow& slip =
-      known_.slip_after(*known.disturbance, known.motion, known_.segments_before(driven.segment.start));
-  const ExpectedPoses expected = known.disturbance->predict_both(*aged(known, driven.segment), slip, driven);
-  auto errors = hypotheses_.weigh(*known.candidates, known.motion->structure, driven, expected.nominal.covariance);
-  if (errors) {
-    weighed_.push_back(*std::move(errors));
-  }
-  if (weighed_.size() > kMostWeighed) {
-    weighed_.pop_front();
-  }
 }
 
 /// Counts and says what was rejected.

@@ -17,7 +17,6 @@ RecentKnowledge::RecentKnowledge(Knowledge first, bool disturbed, double recent,
 }
 
 void RecentKnowledge::publish(Knowledge known, const DrivenSegment& segment) {
-  known.ended = segment.segment.end;
   known_.push_back(std::move(known));
   while (known_.size() > 2 && known_[1].until < segment.known_at - longest_) {
     known_.pop_front();
@@ -35,7 +34,7 @@ void RecentKnowledge::start_run() {
 
 void RecentKnowledge::restart_clock() {
   for (Knowledge& known : known_) {
-    known.until = known.ended = -std::numeric_limits<double>::infinity();
+    known.until = -std::numeric_limits<double>::infinity();
   }
   known_.erase(known_.begin(), known_.end() - 1);
 }
@@ -43,15 +42,6 @@ void RecentKnowledge::restart_clock() {
 const Knowledge& RecentKnowledge::at(double t) const {
   for (std::size_t i = known_.size() - 1; i > 0; --i) {
     if (!later(known_[i].until, t)) {
-      return known_[i];
-    }
-  }
-  return known_.front();
-}
-
-const Knowledge& RecentKnowledge::of_segments_until(double t) const {
-  for (std::size_t i = known_.size() - 1; i > 0; --i) {
-    if (!later(known_[i].ended, t)) {
       return known_[i];
     }
   }
@@ -72,9 +62,7 @@ SegmentList RecentKnowledge::segments_before(double t) const {
 }
 
 void RecentKnowledge::check_loaded(const RecentKnowledge& made) const {
-  const auto complete = [](const Knowledge& known) {
-    return known.motion && known.slip && known.disturbance && known.candidates;
-  };
+  const auto complete = [](const Knowledge& known) { return known.motion && known.slip && known.disturbance; };
   archive::require(!known_.empty() && std::ranges::all_of(known_, complete) && disturbed_ == made.disturbed_ &&
                        recent_ == made.recent_ && longest_ == made.longest_,
                    "what was known of late is not of its learner");

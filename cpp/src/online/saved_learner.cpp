@@ -32,7 +32,7 @@ void MotionLearner::check_loaded() const {
   const auto is_target = [&](const StreamItem& item) {
     const auto* target = std::get_if<TargetSegment>(&item);
     const auto* source = std::get_if<SourceSegment>(&item);
-    return (target == nullptr || (target->horizon <= horizons && are_known(target->classes))) &&
+    return (target == nullptr || (target->horizon < horizons && are_known(target->classes))) &&
            (source == nullptr || (source->source < settings_.stream.sources.size() && are_known(source->classes)));
   };
   if (!std::ranges::all_of(waiting_, is_target)) {

@@ -52,8 +52,6 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
     targets_.emplace_back(horizon, settings.rules, false);
     longest = std::max(longest, horizon);
   }
-  targets_.emplace_back(settings.weighed, settings.rules, true);
-  longest = std::max(longest, settings.weighed);
   keep_ += 2.0 * longest;
   begin_others();
   if (settings.car) {

@@ -33,14 +33,6 @@ TEST_CASE("Bayes from the evidence is the product of likelihoods and priors, and
   CHECK(bank[bank.heaviest()] == 'a');
 }
 
-TEST_CASE("evidence beside the measurements multiplies the weights, and counts as evidence") {
-  HypothesisBank<char> bank = bank_of({{'a', 0.2}, {'b', 0.8}});
-  bank.sharpen(Eigen::Vector2d(std::log(4.0), 0.0));
-  CHECK(bank.weights()[0] == doctest::Approx(0.5));
-  CHECK(bank.evidence()[0] == doctest::Approx(std::log(0.8)));
-  CHECK(bank.observed() == 0);
-}
-
 TEST_CASE("learning is tempered Bayes under priors that need not add up to 1, and counts what spoke") {
   HypothesisBank<char> bank = bank_of({{'a', 1.0}, {'b', 3.0}});
   bank.pass();

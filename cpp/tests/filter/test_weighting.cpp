@@ -38,17 +38,6 @@ TEST_CASE(
   CHECK(updated_weights(leading, equal, prior, settings, 199)[1] == doctest::Approx(0.0025));
 }
 
-TEST_CASE("the rate falls with the measurements, and has halved after as many as the settings say") {
-  const WeightingSettings settings{.learning_rate = 0.5, .slowing = 20.0, .fraction = 0.0};
-  const Eigen::Vector2d even(0.5, 0.5), scores(1.0, -1.0);
-  const auto odds = [&](std::size_t observed) {
-    const Eigen::VectorXd weights = updated_weights(even, scores, even, settings, observed);
-    return std::log(weights[0] / weights[1]);
-  };
-  CHECK(odds(0) == doctest::Approx(1.0));
-  CHECK(odds(20) == doctest::Approx(0.5));
-}
-
 TEST_CASE("candidates are judged by their errors under one covariance, whatever they say of themselves") {
   const std::array<Rows, 2> errors{Eigen::Vector3d(0.1, 0.0, 0.0), Eigen::Vector3d(0.2, 0.0, 0.0)};
   const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();

@@ -38,19 +38,6 @@ TEST_CASE("the weights sum to one and favour the model that is true") {
   CHECK(state.weights[2] > 0.8);
 }
 
-TEST_CASE("what bases take their parameters to be averages to the mean, and predictions over a horizon weigh them") {
-  const MotionModel real(named_basis("edd-2"), {});
-  ModelAverage average =
-      learned({plain(), named_basis("edd-2"), named_basis("full-linear-6")}, real, Eigen::Vector2d(-0.1, -0.4));
-  const AverageState before = average.state();
-  CHECK((average.means() * before.weights).isApprox(before.estimate.mean, 1e-9));
-  CHECK(average.means().col(0).isZero(0.0));
-  average.weigh(Eigen::Vector3d(0.0, 0.0, 10.0));
-  const double odds = std::log(average.state().weights[2] / average.state().weights[1]) -
-                      std::log(before.weights[2] / before.weights[1]);
-  CHECK(odds == doctest::Approx(10.0 * WeightingSettings{}.ahead_rate));
-}
-
 TEST_CASE("a model that was wrong comes back when the terrain changes and nobody notices") {
   const MotionModel real(named_basis("edd-2"), {});
   ModelAverage average = learned({plain(), named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4), kBlind);
@@ -174,7 +161,7 @@ TEST_CASE("on a new terrain candidates get as much weight as at first, on the ol
   const std::vector<double> start{0.0}, zero{0.0};
   const InputHistory parked(start, zero, zero, zero);
   const auto dealt_to_plain = [&](double later_slip) {
-    ModelAverage average("auto", {plain(), named_basis("edd-2")}, {}, {}, {.weighting = {}});
+    ModelAverage average("auto", {plain(), named_basis("edd-2")}, {}, {}, {});
     int alarms = 0;
     for (const double slip : {-0.3, later_slip}) {
       const std::size_t windows = slip == -0.3 ? 80 : 50;

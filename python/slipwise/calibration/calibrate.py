@@ -215,7 +215,6 @@ def learned_by(learned: LearnedLog) -> Learned:
         learned.sources,
         learned.body,
         learned.evidence,
-        learned.simpler,
     )
 
 

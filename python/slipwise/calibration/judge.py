@@ -12,7 +12,6 @@ from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import Verdict
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.simpler_basis import SimplerBasis
 from slipwise.calibration.verdict import Identified, LogFacts, give_verdict, identified
 
 
@@ -25,7 +24,6 @@ class ToJudge:
     known: Identified
     limits: tuple[str, ...]  # advice on limits of the actuator
     horizons: tuple[Predictions, ...]  # the model's at all horizons
-    simpler: SimplerBasis | None = None  # a basis that predicts better than the average of all
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +46,6 @@ class Sensors:
 def judge(learned: ToJudge, facts: LogFacts) -> Judged:
     """Judge what was learned, knowing what the measurements say of themselves."""
     judgement = judgement_of(learned.predictions, learned.baseline, learned.horizons)
-    judgement = replace(judgement, simpler=learned.simpler)
     verdict = give_verdict(judgement, learned.known, facts)
     if not verdict.contradictions:
         verdict = replace(verdict, advice=tuple(dict.fromkeys((*verdict.advice, *learned.limits))))
@@ -76,11 +73,4 @@ def to_judge(learned: Learned, settings: Settings, sensors: Sensors, *, position
     kept = learned.kept.limits is not None
     limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=sensors.wheels)
     judged = learned.judged
-    return ToJudge(
-        learned.predictions[judged],
-        learned.baseline[judged],
-        known,
-        limits,
-        learned.predictions,
-        learned.simpler,
-    )
+    return ToJudge(learned.predictions[judged], learned.baseline[judged], known, limits, learned.predictions)

@@ -10,7 +10,6 @@ import numpy as np
 
 from slipwise.calibration.consistency import Consistency, consistency_of
 from slipwise.calibration.predictions import Predictions
-from slipwise.calibration.simpler_basis import SimplerBasis
 from slipwise.calibration.statistics import held_out_half, ratio_of_means
 from slipwise.models.schema import HeldOut
 from slipwise.number_text import number_text
@@ -47,7 +46,6 @@ class Judgement:
     heading_ratio: Ratio
     still: Still | None  # None where nothing moved
     consistency: Consistency | None = None
-    simpler: SimplerBasis | None = None  # a basis that predicts better than the average of all
 
     @property
     def too_short(self) -> bool:

@@ -11,7 +11,6 @@ from slipwise.calibration.judgement import FEWEST_WINDOWS
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import History
-from slipwise.calibration.simpler_basis import SimplerBasis
 from slipwise.calibration.source_knowledge import LearnedSource
 from slipwise.models import schema
 
@@ -32,7 +31,6 @@ class Learned:
     sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
     body: schema.MeasuredBody | None = None  # what the poses show of its rates
     evidence: _core.MotionEvidence | None = None  # of contradictions, where a learner took the measurements
-    simpler: SimplerBasis | None = None  # a basis that predicts better than the average of all
 
     @property
     def judged(self) -> int:

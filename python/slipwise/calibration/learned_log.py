@@ -18,7 +18,6 @@ from slipwise.calibration.predictions import Predictions, residual
 from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.simpler_basis import SimplerBasis, simpler_basis
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_course import course_of
 from slipwise.logs.log import Run
@@ -48,7 +47,6 @@ class LearnedLog:
     sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
     body: MeasuredBody | None = None  # what the poses show of its rates
     evidence: _core.MotionEvidence | None = None  # of contradictions
-    simpler: SimplerBasis | None = None  # a basis that predicts better than the average
 
 
 @dataclass(frozen=True)
@@ -179,7 +177,6 @@ def learned_of(
         sources=learned_sources(learner, source_names(run.run for run in drive)),
         body=measured_body(model),
         evidence=model.evidence,
-        simpler=simpler_basis(bases, model),
     )
 
 

@@ -27,7 +27,6 @@ from slipwise.calibration.predictors import student_of
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
 from slipwise.calibration.sideways_seen import SidewaysSeen
-from slipwise.calibration.simpler_basis import simpler_basis
 from slipwise.calibration.sloping_ground import for_ground
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
@@ -307,7 +306,6 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             self.sources,
             measured_body(model),
             model.evidence,
-            simpler_basis([basis.name for basis in self._settings.bases()], model),
         )
 
     def save(self) -> bytes:

@@ -92,7 +92,6 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
         or _not_judged(judgement)
         or _unexplained(judgement, facts)
         or _not_better(judgement)
-        or _beaten(judgement)
         or _untrue(judgement)
         or _too_late(known, facts)
     )
@@ -154,18 +153,6 @@ def _unexplained(judgement: Judgement, facts: LogFacts) -> str:
 def _not_better(judgement: Judgement) -> str:
     fault = judgement.fault()
     return f"{_REFUSED} it does not beat the kinematic baseline: {fault}." if fault else ""
-
-
-def _beaten(judgement: Judgement) -> str:
-    """That one of the bases that were averaged is better than the average."""
-    simpler = judgement.simpler
-    if simpler is None:
-        return ""
-    return (
-        f"{_REFUSED} a simpler one predicts better. The basis {simpler.name} misses by "
-        f"{number_text(simpler.position)} times its position error and {number_text(simpler.heading)} times "
-        "its heading error."
-    )
 
 
 def _untrue(judgement: Judgement) -> str:
@@ -240,8 +227,6 @@ def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         )
     elif not judgement.beats_baseline:
         advice.append(_more_or_none(judgement.held_out, facts.input_name))
-    elif judgement.simpler is not None:
-        advice.append(f"Learn with that basis alone: --basis {judgement.simpler.name}.")
     if judgement.consistency is not None:
         advice += judgement.consistency.advice()
     return tuple(advice)

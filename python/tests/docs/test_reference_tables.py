@@ -142,8 +142,7 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     assert f"max(1/(n + {noise.prior_segments:g}), 1/{noise.forgetting_time:g})" in derivations
     assert f"{noise.largest:g} s_i" in derivations
     weighting = average.weighting
-    assert f"rate η_n = {weighting.learning_rate:g} / (1 + n/" in derivations
-    assert f"fraction α_n = min({weighting.fraction:g}, 1/n)" in derivations
+    assert f"η = {weighting.learning_rate:g}, fraction α_n = min({weighting.fraction:g}, 1/n)" in derivations
     assert f"has π = {average.largest_basis:g}" in derivations
     assert f"Above {iekf.gate:g} the window is left out. Above {iekf.huber:g}²" in derivations
     assert f"by less than {iekf.tolerance:g}" in derivations

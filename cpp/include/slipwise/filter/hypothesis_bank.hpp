@@ -32,8 +32,6 @@ class HypothesisWeights {
   void learn(const Eigen::VectorXd& log_scores, const WeightingSettings& settings);
   /// One more measurement that says nothing of any.
   void pass() { ++observed_; }
-  /// Multiplies the weights by evidence that comes beside the measurements: its log factors.
-  void sharpen(const Eigen::VectorXd& log_factors);
   /// Adds log factors to the evidence, which alone makes the weights from now on.
   void weigh(const Eigen::VectorXd& log_factors);
   /// What was found elsewhere: weights that so many measurements made.

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,17 +14,9 @@ namespace slipwise {
 
 struct WeightingSettings {
   double learning_rate =
-      0.5;  ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
-  double slowing = std::numeric_limits<double>::infinity();  ///< measurements after which the rate has halved: errors
-                                                             ///< repeat, and evidence of many counts too much [-]
-  double ahead_rate = 0.3;  ///< the rate of predictions over a horizon that were made before it (StreamSettings) [-]
+      0.5;                 ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
   double fraction = 0.05;  ///< part of the weight that segment n redistributes, 1/n where that is less: poor candidates
                            ///< lead while data are few, and the longer one has led, the less is a change expected [-]
-
-  /// Of the measurement that follows so many.
-  double rate_after(std::size_t observed) const {
-    return learning_rate / (1.0 + static_cast<double>(observed) / slowing);
-  }
 };
 
 /// The weights after candidates predicted a segment with these log scores, `observed` segments having spoken before;

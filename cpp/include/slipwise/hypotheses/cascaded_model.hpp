@@ -45,8 +45,6 @@ class CascadedModel {
   ScoredSegment predict(const DrivenSegment& segment);
   /// Joins the estimates of slip and actuator.
   void refresh();
-  /// [parameters, bases] what each basis of the slip takes them to be, behind the actuator as it was joined last.
-  Eigen::MatrixXd means() const;
   /// What was joined last.
   const std::shared_ptr<const MotionPosterior>& posterior() const { return posterior_; }
   /// The strongest test for a change of terrain since the last `refresh`.

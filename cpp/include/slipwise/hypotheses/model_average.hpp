@@ -20,7 +20,7 @@
 namespace slipwise {
 
 struct ModelAverageSettings {
-  WeightingSettings weighting = {.slowing = 20.0};
+  WeightingSettings weighting = {};
   double largest_basis = 0.4;  ///< prior weight of the basis with the most terms: of all, it is best most often [-]
   SurfaceSettings surfaces = {};
 };
@@ -106,10 +106,6 @@ class ModelAverage {
 
   const MotionModel& model() const { return model_; }
   AverageState state() const;
-  /// [parameters, bases] what each basis takes them to be; 0 where it has no such term.
-  Eigen::MatrixXd means() const;
-  /// Weighs the bases by log scores of their predictions over a horizon. While surfaces compete, none is weighed.
-  void weigh(const Eigen::VectorXd& log_scores);
   /// Whether slip jumped before the last segment or one of those just before it, as the model says that weighted most.
   const SlipChange& change() const { return change_; }
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }

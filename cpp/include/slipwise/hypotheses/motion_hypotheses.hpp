@@ -14,7 +14,6 @@
 #include "slipwise/filter/hypothesis_bank.hpp"
 #include "slipwise/filter/motion_posterior.hpp"
 #include "slipwise/filter/predictive_score.hpp"
-#include "slipwise/hypotheses/candidate_means.hpp"
 #include "slipwise/hypotheses/cascaded_model.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
 #include "slipwise/hypotheses/surface_bank.hpp"
@@ -130,12 +129,6 @@ class MotionHypotheses {
   std::shared_ptr<const MotionPosterior> of(Structure structure) const;
   /// Weight of each structure; 0 where it is not tried.
   std::array<double, kStructures> weights() const;
-  /// What each basis of each structure that is tried takes its parameters to be.
-  std::vector<CandidateMeans> candidates() const;
-  /// Weighs bases and structures by what they would have predicted of a stretch as they were at its start or before,
-  /// all under one `covariance`. Returns the errors of one structure, none where no whole pose was measured.
-  std::optional<BasisErrors> weigh(const std::vector<CandidateMeans>& then, Structure predicts,
-                                   const DrivenSegment& driven, const RowsCovariance& covariance);
   /// How each structure took the last segment in.
   const std::array<StructureUpdate, kStructures>& updates() const { return updates_; }
   /// Segments learned.
@@ -167,8 +160,6 @@ class MotionHypotheses {
   std::size_t leader() const;
   ScoredSegment predict(Structure structure);
   ModelAverage* average_of(Structure structure);
-  ModelAverage* slip_of(Structure structure);
-  const MotionModel& model_of(Structure structure) const;
   ScoredSegment learned(const ModelAverage& average, Structure structure);
   Surface completed(const KnownSurface& known, std::size_t place) const;
   void update_weights();

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <limits>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -16,7 +15,6 @@
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/disturbance/slip_disturbance.hpp"
 #include "slipwise/filter/motion_posterior.hpp"
-#include "slipwise/hypotheses/candidate_means.hpp"
 #include "slipwise/online/source_noise.hpp"
 #include "slipwise/online/student_calibration.hpp"
 #include "slipwise/segment/driven_segment.hpp"
@@ -28,11 +26,8 @@ struct Knowledge {
   double until;                                   ///< stamp of what was measured last of all that was learned [s]
   std::shared_ptr<const MotionPosterior> motion;  ///< of the structure that predicts
   std::shared_ptr<const MotionPosterior> slip;    ///< of the best structure that has slip
-  std::shared_ptr<const DisturbanceFilter> disturbance;                ///< how slip differs from that now and then
-  std::shared_ptr<const std::vector<CandidateMeans>> candidates = {};  ///< what is weighed by what comes later
-  /// End of the last segment that was learned, however late it was known [s]; RecentKnowledge says it.
-  double ended = -std::numeric_limits<double>::infinity();
-  std::shared_ptr<const SourceNoise> sources = {};  ///< how large errors of poses are; nothing of one sort alone
+  std::shared_ptr<const DisturbanceFilter> disturbance;  ///< how slip differs from that now and then
+  std::shared_ptr<const SourceNoise> sources = {};       ///< how large errors of poses are; nothing of one sort alone
 };
 
 /// A prediction of one horizon, and what was measured.

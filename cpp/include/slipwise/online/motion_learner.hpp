@@ -64,9 +64,8 @@ struct LearnedModel {
   double seconds;                            ///< of all segments learned
   std::size_t segments;
   RejectionCounts rejected;
-  std::optional<CarCurves> car = {};     ///< where commands are throttle and steering
-  std::deque<BasisErrors> weighed = {};  ///< of all bases, by what bases are weighed
-  MotionEvidence evidence = {};          ///< whether poses and inputs contradict each other
+  std::optional<CarCurves> car = {};  ///< where commands are throttle and steering
+  MotionEvidence evidence = {};       ///< whether poses and inputs contradict each other
 };
 
 /// Streams must be in order each; they may be late relative to each other by the latency of the settings. No push
@@ -162,7 +161,7 @@ class MotionLearner {
   static void archive(Self& self, Archive& a) {
     a(self.settings_, self.stream_, self.hypotheses_, self.disturbance_, self.waiting_, self.started_, self.known_);
     a(self.limits_, self.errors_, self.log_, self.runs_, self.run_begins_, self.before_run_, self.seconds_);
-    a(self.sources_, self.clock_, self.to_weigh_, self.weighed_);
+    a(self.sources_, self.clock_);
   }
 
  private:
@@ -178,8 +177,6 @@ class MotionLearner {
   void learn_disturbance(const DrivenSegment& segment);
   void publish(const DrivenSegment& segment);
   void judge(const TargetSegment& target);
-  void weigh_before(double t);
-  void weigh(const TargetSegment& target);
   std::shared_ptr<const MotionPosterior> aged(const Knowledge& known, const Segment& segment) const;
   SlipNow slip_at_newest(const Knowledge& known, const CommandLimits& limits);
   std::vector<DrivenSegment> complete_now() const;
@@ -206,9 +203,7 @@ class MotionLearner {
   bool run_begins_ = true;  ///< no measurement of the run has come yet
   double before_run_;       ///< newest stamp of the runs before [s]
   double seconds_ = 0.0;
-  std::deque<TargetSegment> to_weigh_;  ///< by which bases are weighed, once a later segment comes
-  std::deque<BasisErrors> weighed_;     ///< of late, of all bases
-  KnownSources sources_;                ///< where there are several, or fixes
+  KnownSources sources_;  ///< where there are several, or fixes
 };
 
 }  // namespace slipwise

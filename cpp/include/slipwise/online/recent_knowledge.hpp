@@ -22,10 +22,7 @@ class RecentKnowledge {
   /// After a segment.
   void publish(Knowledge known, const DrivenSegment& segment);
   /// What is known now is something else, of the same measurements.
-  void replace(Knowledge known) {
-    known.ended = newest().ended;
-    known_.back() = std::move(known);
-  }
+  void replace(Knowledge known) { known_.back() = std::move(known); }
   /// Another run begins: its segments alone tell of the slip.
   void start_run();
   /// Stamps begin again: what is known now was known before all of them.
@@ -34,8 +31,6 @@ class RecentKnowledge {
   const Knowledge& newest() const { return known_.back(); }
   /// The newest of what was known at `t` [s].
   const Knowledge& at(double t) const;
-  /// The newest that was learned of segments that ended by `t` [s] alone, however late these were known.
-  const Knowledge& of_segments_until(double t) const;
   /// The last segments that were complete at `t` [s].
   SegmentList segments_before(double t) const;
   /// Where slip was after these of them: good until the next call.

@@ -44,8 +44,6 @@ struct StreamSettings {
   double unknown_after = 0.5;                      ///< an input is unknown once it is older than this [s]
   double latency = 0.5;                            ///< streams may be late relative to each other by up to this [s]
   std::vector<double> horizons = {1.0, 2.0, 5.0};  ///< of the predictions that are held against what was measured [s]
-  double weighed =
-      5.0;  ///< of the predictions by which bases and structures are weighed, or a frame's that is shorter [s]
   /// The predictions use parameters as they were known so long before their start [s]; without it, a horizon before.
   std::optional<double> embargo = {};
   Pose2 sensor = {};                 ///< where the pose sensor is known to sit in base_link
@@ -60,7 +58,7 @@ struct StreamSettings {
 
 /// A segment whose prediction is held against what was measured.
 struct TargetSegment {
-  std::size_t horizon;  ///< among the settings'; behind these, of what bases and structures are weighed by
+  std::size_t horizon;  ///< among the settings'
   DrivenSegment driven;
   std::optional<InputHistory> baseline = {};  ///< what the kinematic baseline does, where it is not the inputs
   std::array<std::size_t, 2> classes = {};    ///< of the noise of its poses, where sources are distinguished
