@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from field.conftest import FieldLog
 
 Slipwise = Callable[..., Result]
 
-SAID = re.compile(r"the wheels do not explain the poses\. They explain [5-9] % of the motion")
+SAID = "the wheels do not explain the poses. They explain 8 % of the motion"
 
 
 @pytest.mark.parametrize(
@@ -24,12 +23,12 @@ def test_unrelated_wheels_are_said_not_to_explain_the_poses(
 ) -> None:
     result = slipwise(command[0], field_log("unrelated_wheels.csv"), *command[1:])
     assert result.code == 1
-    assert SAID.search(" ".join(result.out.split()))
+    assert SAID in " ".join(result.out.split())
 
 
 def test_a_live_learner_says_so_too(slipwise: Slipwise, field_log: FieldLog, folder: Path) -> None:
     replay = ("live", "--replay", field_log("unrelated_wheels.csv"), "--rate", "0", "-o", "live.yaml")
     slipwise(*replay)
     saved = " ".join((folder / "live.yaml").read_text().split())
-    assert SAID.search(saved)
+    assert SAID in saved
     assert "good: false" in saved
