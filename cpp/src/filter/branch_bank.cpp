@@ -148,6 +148,11 @@ BranchBank::BranchBank(const MotionModel& model, const BranchSettings& settings)
 
 Estimate BranchBank::mixture() const { return merged(branches_.keys(), branches_.weights()); }
 
+Estimate BranchBank::mixture_above(double weight) const {
+  const Eigen::VectorXd heavy = (branches_.weights().array() < weight).select(0.0, branches_.weights());
+  return merged(branches_.keys(), heavy / heavy.sum());
+}
+
 void BranchBank::restart(const Estimate& known) {
   if (!follow()) {
     return;

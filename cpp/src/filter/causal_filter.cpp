@@ -20,7 +20,9 @@ namespace {
 
 SLIPWISE_TUNING(kSpeedChange, 0.1);  // the prior follows the speeds when their logarithm moves by more than this
 
-SLIPWISE_TUNING(kProven, 0.01);    // weight from which a branch says what is known
+// Weight from which a branch says what is known: the many that were born of late and show nothing hold a jump possible,
+// and have tails far beyond a standard deviation.
+SLIPWISE_TUNING(kProven, 0.01);
 SLIPWISE_TUNING(kExpected, 0.5);   // probability of a jump where something says that the terrain may have changed
 SLIPWISE_TUNING(kForgotten, 0.1);  // of the prior variance of slip, given back there where none may jump
 
@@ -31,23 +33,6 @@ constexpr std::size_t kShortest = 1;            // segments that a refit takes a
 
 /// Segments after which a refit takes effect that began after so many.
 std::size_t refitted_after(std::size_t segments) { return segments + std::max(kShortest, segments / 16); }
-
-/// Of the branches that weigh something: the many that were born of late and show nothing hold a jump possible, and
-/// have tails far beyond a standard deviation.
-Eigen::MatrixXd proven_covariance(const HypothesisBank<Branch>& branches) {
-  const Eigen::VectorXd weights = (branches.weights().array() < kProven).select(0.0, branches.weights());
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(branches[0].estimate.mean.size());
-  for (std::size_t i = 0; i < branches.size(); ++i) {
-    mean += weights[static_cast<Eigen::Index>(i)] / weights.sum() * branches[i].estimate.mean;
-  }
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(mean.size(), mean.size());
-  for (std::size_t i = 0; i < branches.size(); ++i) {
-    const Estimate& known = branches[i].estimate;
-    const Eigen::VectorXd away = known.mean - mean;
-    all += weights[static_cast<Eigen::Index>(i)] / weights.sum() * (known.covariance + away * away.transpose());
-  }
-  return all;
-}
 
 bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedChange; }
 
@@ -196,7 +181,7 @@ SurfaceSlip CausalFilter::new_surface(std::span<const SurfaceSlip> known) const 
 
 Estimate CausalFilter::reported() const {
   const bool alone = branches_.size() < 2;
-  const Eigen::MatrixXd covariance = alone ? state_.estimate.covariance : proven_covariance(branches_.branches());
+  const Eigen::MatrixXd covariance = alone ? state_.estimate.covariance : branches_.mixture_above(kProven).covariance;
   return {state_.estimate.mean, stated_.asDiagonal() * covariance * stated_.asDiagonal()};
 }
 

@@ -60,6 +60,8 @@ class BranchBank {
   const HypothesisBank<Branch>& branches() const { return branches_; }
   /// The mean and covariance over all branches.
   Estimate mixture() const;
+  /// The same over those alone that weigh at least so much.
+  Estimate mixture_above(double weight) const;
   const Estimate& leader() const { return branches_[branches_.heaviest()].estimate; }
   /// Whether with the last segment another branch came to hold more than half of the weight.
   bool leader_changed() const { return leader_changed_; }
