@@ -283,7 +283,7 @@ def _fit(windows: Sequence[_Window], start: Floats, *, heading: bool) -> tuple[F
     return state, covariance * max(wider, 1.0)
 
 
-def _told(left: Sequence[_Left]) -> tuple[Floats, Floats]:
+def _information(left: Sequence[_Left]) -> tuple[Floats, Floats]:
     """Return what windows tell of the state over its prior, by direction: values [4] and vectors [4, 4]."""
     scale = np.outer(_PRIOR_STD, _PRIOR_STD)
     values, vectors = np.linalg.eigh(sum((each.information for each in left), np.zeros((4, 4))) * scale)
@@ -292,7 +292,7 @@ def _told(left: Sequence[_Left]) -> tuple[Floats, Floats]:
 
 def _moved(left: Sequence[_Left], state: Floats) -> Floats:
     """Return the next state: along directions of which the windows tell nothing it is that of the prior."""
-    values, vectors = _told(left)
+    values, vectors = _information(left)
     start = state / _PRIOR_STD
     gradient = sum((each.jacobian.T @ each.rows for each in left), np.zeros(4)) * _PRIOR_STD
     along = vectors.T @ (gradient + start) / (values + 1.0)
@@ -302,7 +302,7 @@ def _moved(left: Sequence[_Left], state: Floats) -> Floats:
 
 
 def _covariance(left: Sequence[_Left]) -> Floats:
-    values, vectors = _told(left)
+    values, vectors = _information(left)
     found: Floats = (vectors / (values + 1.0)) @ vectors.T * np.outer(_PRIOR_STD, _PRIOR_STD)
     return found
 

@@ -66,7 +66,7 @@ def find_roles(
         time.sleep(LOOK_EVERY)
 
 
-def topics_heard(roles: Roles) -> list[Topic]:
+def role_topics(roles: Roles) -> list[Topic]:
     """Return the topics from which is learned, one or two times where one is wheels and pose."""
     fixes = roles.pose is not None and roles.pose.type == NAV_SAT_FIX
     turning = (roles.imu or roles.gyro) if fixes else (roles.gyro if roles.pose is None else None)

@@ -14,8 +14,8 @@ from slipwise.live.ros_roles import (
     FirstPoses,
     first_poses,
     only_positions,
+    role_topics,
     source_topics,
-    topics_heard,
     with_oriented_imu,
 )
 from slipwise.live.ros_transport import CueTopics, RosTransport
@@ -109,7 +109,7 @@ def test_an_imu_without_an_orientation_gives_no_headings(oriented: bool) -> None
     said: list[str] = []
     wire = Wire({"/imu": [imu(oriented=oriented)] * 3})
     chosen = roles(FIX, headed=True, gyro=True)
-    found = with_oriented_imu(FirstMessages(wire, topics_heard(chosen)), chosen, said.append)
+    found = with_oriented_imu(FirstMessages(wire, role_topics(chosen)), chosen, said.append)
     assert only_positions(found) is not oriented
     assert found.gyro == GYRO
     assert said == ([] if oriented else ["/imu has no orientation: its yaw rates are used"])
@@ -128,7 +128,7 @@ def lidar(w: float, qx: float = 0.0) -> bytes:
 def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float) -> None:
     said: list[str] = []
     wire = Wire({"/lidar": [lidar(w)] * 3})
-    first = FirstMessages(wire, topics_heard(roles(LIDAR)))
+    first = FirstMessages(wire, role_topics(roles(LIDAR)))
     positions, attitude = first_poses(first, roles(LIDAR), said.append)
     assert positions is (w == 0.0)
     assert not attitude
@@ -144,7 +144,7 @@ def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float)
 
 def test_poses_with_a_roll_or_a_pitch_are_learned_from_with_terms_of_gravity() -> None:
     def seen(chosen: Roles, messages: dict[str, list[bytes]]) -> FirstPoses:
-        return first_poses(FirstMessages(Wire(messages), topics_heard(chosen)), chosen, print)
+        return first_poses(FirstMessages(Wire(messages), role_topics(chosen)), chosen, print)
 
     tilted = [lidar(1.0), lidar(0.96, 0.28), lidar(1.0)]
     assert seen(roles(LIDAR), {"/lidar": tilted}) == (False, True)
@@ -159,7 +159,7 @@ def test_what_came_before_it_was_known_how_it_is_read_is_learned_from_in_order()
     wire.subscribe = lambda topic, _kind, take, *, latched=False: takers.setdefault(topic, take)  # type: ignore[method-assign]
     chosen = roles(LIDAR, others=(Topic("/mocap", POSE_STAMPED, 1),))
     chosen = replace(chosen, wheel=None)
-    first = FirstMessages(wire, topics_heard(chosen))
+    first = FirstMessages(wire, role_topics(chosen))
     for topic in ("/mocap", "/lidar", "/mocap"):
         takers[topic](lidar(1.0))
     found: list[Sample] = []
