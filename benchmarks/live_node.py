@@ -2,8 +2,9 @@
 """What `slipwise live` costs and survives: processor time, memory over a day, kill -9 at random instants.
 
 Processor time: the command as a process of its own on Cyclone DDS, hearing commands at 100 Hz, wheel speeds
-at 50 Hz and poses at 20 Hz from another process in real time, publishing all it has. Memory: the node over a
-simulated day (`driven_day`), as fast as it goes. Kill: a node that saves several times a second is killed at
+at 50 Hz and poses at 20 Hz from another process in real time, publishing all it has; after `make ros-peer`
+also on rclpy, and a bare rclpy node that hears the same and publishes odometry at 50 Hz. Memory: the node over
+a simulated day (`driven_day`), as fast as it goes. Kill: a node that saves several times a second is killed at
 random instants; then its cache is read, and a node goes on from it.
 
     python benchmarks/live_node.py --seconds 60 --hours 24 --kills 200 --json live.json
@@ -20,6 +21,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import sysconfig
 import tempfile
 import threading
 import time
@@ -42,6 +44,12 @@ from slipwise.models import load_model
 
 SEED = 20
 DOMAIN = 77
+ROOT = Path(__file__).resolve().parents[1]
+#: Runs the command in the Python of ROS, which has no slipwise of its own.
+IN_ROS = (
+    f"import site; site.addsitedir({sysconfig.get_path('purelib')!r}); "
+    "from slipwise.cli.main import main; main()"
+)
 WARM = 10.0  # s before processor time counts
 PIECE = 60.0  # s of the simulation at once
 SAVES = 0.25  # s between two saves of the node that is killed
@@ -75,40 +83,53 @@ class Driving(Feed):
 
 @dataclass(frozen=True)
 class Cost:
-    """Processor time of the command."""
+    """Processor time of a node."""
 
+    node: str
     seconds: float
     percent: float  # of one core
 
 
-def processor_time(seconds: float) -> Cost:
-    """Measure `slipwise live` on Cyclone DDS in real time."""
+def nodes(folder: str) -> dict[str, list[str]]:
+    """Return the commands of the nodes that are measured, by their names."""
+    python = Path(os.environ.get("SLIPWISE_ROS_VENV") or ROOT / ".venv-ros") / "bin" / "python"
+    topics = ["--command-topic", "/cmd_vel", "--wheel-topic", "/odom", "--pose-topic", "/pose"]
+    found = {}
+    for wire, start in (
+        ("cyclonedds", [sys.executable, "-m", "slipwise"]),
+        ("rclpy", [str(python), "-c", IN_ROS]),
+    ):
+        found[f"slipwise on {wire}"] = [*start, "live", "--transport", wire, *topics, "--cache", folder]
+    if not python.exists():
+        return {name: command for name, command in found.items() if "rclpy" not in name}
+    return found | {"a bare node on rclpy": [str(python), str(Path(__file__).with_name("bare_node.py"))]}
+
+
+def processor_time(seconds: float) -> Iterator[Cost]:
+    """Measure each node in real time."""
     with tempfile.TemporaryDirectory() as folder:
-        output = Path(folder, "said").open("w")  # noqa: SIM115 (closed with the process)
-        command = [
-            sys.executable,
-            "-m",
-            "slipwise",
-            "live",
-            "--transport",
-            "cyclonedds",
-        ]
-        topics = ["--command-topic", "/cmd_vel", "--wheel-topic", "/odom", "--pose-topic", "/pose"]
-        with subprocess.Popen(
-            [*command, *topics, "--cache", folder],
-            stdout=output,
-            env=os.environ | {"ROS_DOMAIN_ID": str(DOMAIN)},
-        ) as live:
-            try:
-                with publishing(seconds + WARM + 5.0):
-                    time.sleep(WARM + 3.0)
-                    before, began = _ticks(live.pid), time.monotonic()
-                    time.sleep(seconds)
-                    used, passed = _ticks(live.pid) - before, time.monotonic() - began
-            finally:
-                live.send_signal(signal.SIGTERM)
-                live.wait(10.0)
-    return Cost(passed, 100.0 * used / os.sysconf("SC_CLK_TCK") / passed)
+        for name, command in nodes(folder).items():
+            yield cost_of(name, command, Path(folder), seconds)
+
+
+def cost_of(name: str, command: list[str], folder: Path, seconds: float) -> Cost:
+    """Measure one node in real time."""
+    environment = os.environ | {"ROS_DOMAIN_ID": str(DOMAIN), "ROS_LOG_DIR": str(folder)}
+    environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    with (
+        (folder / "said").open("w") as output,
+        subprocess.Popen(command, stdout=output, env=environment) as live,
+    ):
+        try:
+            with publishing(seconds + WARM + 5.0):
+                time.sleep(WARM + 3.0)
+                before, began = _ticks(live.pid), time.monotonic()
+                time.sleep(seconds)
+                used, passed = _ticks(live.pid) - before, time.monotonic() - began
+        finally:
+            live.send_signal(signal.SIGTERM)
+            live.wait(10.0)
+    return Cost(name, passed, 100.0 * used / os.sysconf("SC_CLK_TCK") / passed)
 
 
 def _ticks(process: int) -> int:
@@ -270,9 +291,12 @@ def main() -> int:
         return 0
     out, document = Output(options.json), {}
     if options.seconds > 0.0:
-        cost = processor_time(options.seconds)
-        out.line(f"processor time: {cost.percent:.1f} % of one core over {cost.seconds:.0f} s (5 % wanted)")
-        document["processor"] = asdict(cost)
+        costs = []
+        for cost in processor_time(options.seconds):
+            costs.append(cost)
+            out.line(f"{cost.node}: {cost.percent:.1f} % of one core over {cost.seconds:.0f} s (4 % wanted)")
+        out.line(f"load of the machine: {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+        document["processor"] = [asdict(cost) for cost in costs]
     if options.kills > 0:
         found = kills(options.kills)
         out.line(

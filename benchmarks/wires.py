@@ -38,7 +38,7 @@ class Heard:
     def __init__(self) -> None:
         self.latencies: list[float] = []
 
-    def __call__(self, message: bytes) -> None:
+    def __call__(self, message: bytes, _arrived: float) -> None:
         """Take one in."""
         now = time.time()
         seconds, rest = _STAMP.unpack_from(message, 4)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Addresses of files on servers (https, s3, gs, az), and what of them may be shown."""
+"""Addresses of files on servers (https, s3, gs, az), what of them may be shown, and places to listen at."""
 
 from __future__ import annotations
 
@@ -35,3 +35,10 @@ def _public(url: str) -> str:
     place = re.split(r"[?#]", rest, maxsplit=1)[0]
     server, slash, path = place.partition("/")
     return f"{scheme}://{server.rpartition('@')[2]}{slash}{path}"
+
+
+def host_and_port(address: str) -> tuple[str, str]:
+    """Return the host of an address and its port, "" where it has none; "[::1]:7447" is "::1" and "7447"."""
+    host, colon, port = address.rpartition(":")
+    ported = colon and port.isdigit() and (":" not in host or host.endswith("]"))
+    return (host.strip("[]"), port) if ported else (address, "")

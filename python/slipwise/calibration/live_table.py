@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
+from slipwise.addresses import host_and_port
 from slipwise.calibration.keys import key
 from slipwise.models.inputs import InputName, singular
 
@@ -92,8 +93,4 @@ class LiveTable(_Table):
     @property
     def host(self) -> str:
         """Where the web page is served."""
-        if self.address is None:
-            return LOOPBACK
-        host, colon, port = self.address.rpartition(":")
-        ported = colon and port.isdigit() and (":" not in host or host.endswith("]"))
-        return (host.strip("[]") if ported else self.address) or LOOPBACK
+        return host_and_port(self.address or "")[0] or LOOPBACK

@@ -4,14 +4,11 @@
 from __future__ import annotations
 
 import threading
-import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
 
-from slipwise.live.wires.wire import RosWire
+from slipwise.live.wires.wire import OnMessage, RosWire
 from slipwise.logs.role_choice import Topic
-
-Take = Callable[[bytes, float], None]  # a message, and when it arrived [s since 1970]
 
 
 class FirstMessages:
@@ -28,7 +25,7 @@ class FirstMessages:
     def __init__(self, wire: RosWire, topics: Iterable[Topic] = ()) -> None:
         self._changed = threading.Condition()
         self._kept: list[tuple[str, bytes, float]] = []
-        self._takers: Mapping[str, Take] | None = None
+        self._takers: Mapping[str, OnMessage] | None = None
         kinds = {topic.name: topic.type for topic in topics}
         self.topics = frozenset(kinds)
         for name, kind in kinds.items():
@@ -42,7 +39,7 @@ class FirstMessages:
                     return None
             return found[:count]
 
-    def hand_over(self, takers: Mapping[str, Take]) -> None:
+    def hand_over(self, takers: Mapping[str, OnMessage]) -> None:
         """Give what was kept, and what comes from now on, to who takes it by the topic's name."""
         with self._changed:
             for topic, payload, arrived in self._kept:
@@ -57,8 +54,7 @@ class FirstMessages:
     def _has_more(self, topic: str, than: int) -> bool:
         return len(self._payloads(topic)) > than
 
-    def _hear(self, topic: str, payload: bytes) -> None:
-        arrived = time.time()
+    def _hear(self, topic: str, payload: bytes, arrived: float) -> None:
         with self._changed:
             if self._takers is None:
                 self._kept.append((topic, payload, arrived))

@@ -13,8 +13,8 @@ from slipwise.live.ros_roles import (
     find_roles,
     first_poses,
     only_positions,
-    role_topics,
     source_topics,
+    uses_of,
     with_oriented_imu,
 )
 from slipwise.live.ros_transport import CueTopics, RosTransport
@@ -55,7 +55,7 @@ def find_robot(  # noqa: PLR0913 (where it is, and what is known of it)
     """
     try:
         roles = find_roles(wire, options, say, own=f"/{name}")
-        first = FirstMessages(wire, role_topics(roles))
+        first = FirstMessages(wire, [topic for _, topic in uses_of(roles)])
         roles = with_oriented_imu(first, roles, say)
         for note in roles.guessed:
             say(str(note))

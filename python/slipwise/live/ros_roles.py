@@ -7,7 +7,7 @@ import contextlib
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from slipwise.live.cdr_reader import reader_of
 from slipwise.live.first_messages import FirstMessages
@@ -66,12 +66,22 @@ def find_roles(
         time.sleep(LOOK_EVERY)
 
 
-def role_topics(roles: Roles) -> list[Topic]:
-    """Return the topics from which is learned, one or two times where one is wheels and pose."""
+Use = Literal["command", "wheel", "pose", "orientation", "gyro", "other"]
+
+
+def uses_of(roles: Roles) -> list[tuple[Use, Topic]]:
+    """Return the topics from which is learned, and as what; one may be both wheels and pose."""
     fixes = roles.pose is not None and roles.pose.type == NAV_SAT_FIX
-    turning = (roles.imu or roles.gyro) if fixes else (roles.gyro if roles.pose is None else None)
-    found = (roles.command, roles.wheel, roles.pose, turning, *roles.others)
-    return [topic for topic in found if topic is not None]
+    turns = roles.pose is None or (fixes and roles.imu is None)
+    found: tuple[tuple[Use, Topic | None], ...] = (
+        ("command", roles.command),
+        ("wheel", roles.wheel),
+        ("orientation", roles.imu if fixes else None),
+        ("gyro", roles.gyro if turns else None),
+        ("pose", roles.pose),
+        *(("other", topic) for topic in roles.others),
+    )
+    return [(use, topic) for use, topic in found if topic is not None]
 
 
 def with_oriented_imu(first: FirstMessages, roles: Roles, say: Callable[[str], None]) -> Roles:

@@ -14,20 +14,22 @@ from typing import Any
 
 from slipwise.errors import SlipwiseError
 from slipwise.live.cdr_reader import reader_of
-from slipwise.live.first_messages import FirstMessages, Take
+from slipwise.live.first_messages import FirstMessages
 from slipwise.live.listeners import Listeners
 from slipwise.live.node_parameters import NodeParameters
 from slipwise.live.outputs import AppliedParameters, Output, Status
 from slipwise.live.ros_messages import TOPICS, RosMessages, RosTopic
+from slipwise.live.ros_roles import Use, uses_of
 from slipwise.live.ros_samples import FixPoses, ToPose, to_command, to_gyro, to_pose, to_wheels
 from slipwise.live.samples import Override, Pose, Request, SurfaceCue, Unusable
 from slipwise.live.stamps import Stamps
 from slipwise.live.transport import OnSample
 from slipwise.live.typed_messages import COMMANDS, asked_of
 from slipwise.live.wires.ros_types import OWN_PACKAGE, ros_types
-from slipwise.live.wires.wire import RosWire
-from slipwise.logs.messages import IMU, NAV_SAT_FIX
+from slipwise.live.wires.wire import OnMessage, RosWire
+from slipwise.logs.messages import NAV_SAT_FIX
 from slipwise.logs.options import LogOptions
+from slipwise.logs.role_choice import Topic
 from slipwise.logs.topics import Roles
 
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
@@ -74,7 +76,7 @@ class RosTransport:
         simulated: bool | None = None,
         first: FirstMessages | None = None,
     ) -> None:
-        self._first, self._takers = first or FirstMessages(wire), dict[str, Take]()
+        self._first, self._takers = first or FirstMessages(wire), dict[str, OnMessage]()
         self._wire, self._roles, self._options = wire, roles, options
         self._name, self._override, self._terrain = name, cues.override, cues.terrain
         self._headed, self._simulated = headed, simulated
@@ -204,35 +206,32 @@ class RosTransport:
         return f"/{self._name}/{topic}"
 
     def _subscribe_roles(self, on_sample: OnSample) -> None:
-        roles, options = self._roles, self._options
-        if roles.command is not None:
-            kind = roles.command.type
-            self._take(roles.command.name, kind, to_command(kind, options), on_sample)
-        converters: list[tuple[str, str, ToSample]] = []
-        if roles.wheel is not None:
-            kind = roles.wheel.type
-            converters.append(
-                (roles.wheel.name, kind, to_wheels(kind, options, self._notices.put, roles.wheel.name))
-            )
-        if roles.pose is not None and roles.pose.type == NAV_SAT_FIX:
-            fixes = FixPoses(options, headed=roles.imu is not None)
-            converters.append((roles.pose.name, NAV_SAT_FIX, fixes.take_fix))
-            if roles.imu is not None:
-                self._take(roles.imu.name, IMU, fixes.take_imu, on_sample)
-            elif roles.gyro is not None:
-                self._take(roles.gyro.name, IMU, to_gyro, on_sample)
-        elif roles.pose is None and roles.gyro is not None:
-            self._take(roles.gyro.name, IMU, to_gyro, on_sample)
-        elif roles.pose is not None:
-            kind = roles.pose.type
-            converters.append((roles.pose.name, kind, to_pose(kind, options, headed=self._headed)))
-        for other in roles.others:
-            fix = FixPoses(options, headed=False).take_fix if other.type == NAV_SAT_FIX else None
-            convert = fix or to_pose(other.type, options)
-            converters.append((other.name, other.type, _from_source(convert, other.name)))
-        for topic in dict.fromkeys(name for name, _, _ in converters):  # one may be both wheels and pose
-            mine = [(kind, convert) for name, kind, convert in converters if name == topic]
-            self._take(topic, mine[0][0], _all_of([convert for _, convert in mine]), on_sample)
+        fixes = FixPoses(self._options, headed=self._roles.imu is not None)
+        kinds: dict[str, str] = {}
+        converters: dict[str, list[ToSample]] = {}  # one topic may be both wheels and pose
+        for use, topic in uses_of(self._roles):
+            kinds[topic.name] = topic.type
+            converters.setdefault(topic.name, []).append(self._converter(use, topic, fixes))
+        for name, found in converters.items():
+            self._take(name, kinds[name], _all_of(found), on_sample)
+
+    def _converter(self, use: Use, topic: Topic, fixes: FixPoses) -> ToSample:
+        kind, options = topic.type, self._options
+        match use:
+            case "command":
+                return to_command(kind, options)
+            case "wheel":
+                return to_wheels(kind, options, self._notices.put, topic.name)
+            case "pose":
+                return fixes.take_fix if kind == NAV_SAT_FIX else to_pose(kind, options, headed=self._headed)
+            case "orientation":
+                return fixes.take_imu
+            case "gyro":
+                return to_gyro
+            case "other":
+                alone = FixPoses(options, headed=False)
+                convert = alone.take_fix if kind == NAV_SAT_FIX else to_pose(kind, options)
+                return _from_source(convert, topic.name)
 
     def _take(self, topic: str, kind: str, convert: ToSample, on_sample: OnSample) -> None:
         """Subscribe; a message that cannot be read is said once, and left out."""
@@ -253,7 +252,7 @@ class RosTransport:
         if topic in self._first.topics:
             self._takers[topic] = take
         else:
-            self._wire.subscribe(topic, kind, lambda payload: take(payload, time.time()))
+            self._wire.subscribe(topic, kind, take)
 
     def _call_nodes(self) -> None:
         nodes = NodeParameters(self._wire, self._reading)

@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, insort
 from collections import deque
 from collections.abc import Callable
 from typing import Any
-
-import numpy as np
 
 from slipwise.logs.clock_steps import BACK, ENOUGH
 from slipwise.logs.findings.clocks import ClockApart, ClockOfTopic
@@ -94,22 +93,32 @@ class _Lead:
     """How far the headers of a topic are ahead of their arrival, by the least delayed of late."""
 
     def __init__(self) -> None:
-        self._leads: deque[float] = deque(maxlen=LOOKED_AT)
+        self._leads: deque[float] = deque()
+        self._sorted: list[float] = []  # the same, the least first: one goes and one comes with each message
         self._odd: list[float] = []  # that do not go with these: several in a row are a clock that was set
         self.lead = 0.0  # s; of a clock that runs at another rate the newest
         self.steady = False  # the clock runs at the rate of this computer's
         self.known = False  # by less than a sensor may take
 
     def take(self, lead: float) -> None:
-        if self._leads and abs(lead - float(np.median(self._leads))) > BACK:
+        if self._leads and abs(lead - self._median()) > BACK:
             self._odd.append(lead)
             if len(self._odd) < ENOUGH:
                 return
-            self._leads.clear()
-            self._leads.extend(self._odd)
+            self._leads, self._sorted = deque(self._odd), sorted(self._odd)
         else:
-            self._leads.append(lead)
+            self._keep(lead)
         self._odd = []
-        enough, spread = len(self._leads) >= _FEWEST, max(self._leads) - min(self._leads)
+        enough, spread = len(self._leads) >= _FEWEST, self._sorted[-1] - self._sorted[0]
         self.steady, self.known = enough and spread < _STEADY, enough and spread < LATENCY
-        self.lead = max(self._leads) if self.steady or len(self._leads) < _FEWEST else lead
+        self.lead = self._sorted[-1] if self.steady or len(self._leads) < _FEWEST else lead
+
+    def _keep(self, lead: float) -> None:
+        if len(self._leads) == LOOKED_AT:
+            del self._sorted[bisect_left(self._sorted, self._leads.popleft())]
+        self._leads.append(lead)
+        insort(self._sorted, lead)
+
+    def _median(self) -> float:
+        half, odd = divmod(len(self._sorted), 2)
+        return self._sorted[half] if odd else (self._sorted[half - 1] + self._sorted[half]) / 2.0

@@ -9,6 +9,7 @@ import socket
 import threading
 import time
 
+from slipwise.addresses import host_and_port
 from slipwise.errors import SettingsError
 from slipwise.live.coming import ComingLines, ComingSoon
 from slipwise.live.lines import LineReader, line_of
@@ -29,7 +30,7 @@ def listening_socket(address: str) -> socket.socket:
     Raises:
         SettingsError: the address cannot be used.
     """
-    host, _, port = address.rpartition(":")
+    host, port = host_and_port(address)
     found = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         found.bind((host or "127.0.0.1", int(port)))

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,19 +13,20 @@ from slipwise.live.ros_roles import (
     FirstPoses,
     first_poses,
     only_positions,
-    role_topics,
     source_topics,
+    uses_of,
     with_oriented_imu,
 )
 from slipwise.live.ros_transport import CueTopics, RosTransport
 from slipwise.live.samples import Pose, Reading, Sample
 from slipwise.live.wires.ros_types import ros_types
-from slipwise.live.wires.wire import WireTopic
+from slipwise.live.wires.wire import OnMessage, WireTopic
 from slipwise.logs.messages import IMU, NAV_SAT_FIX, POSE_STAMPED
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import Topic
 from slipwise.logs.topics import Roles
 
+NOW = 1e9  # s
 STORE = ros_types()
 FIX, LIDAR, GYRO = Topic("/fix", NAV_SAT_FIX, 1), Topic("/lidar", POSE_STAMPED, 1), Topic("/imu", IMU, 1)
 
@@ -42,12 +42,10 @@ class Wire:
     def topics(self) -> list[WireTopic]:
         return []
 
-    def subscribe(
-        self, topic: str, _type_name: str, on_message: Callable[[bytes], None], *, latched: bool = False
-    ) -> None:
+    def subscribe(self, topic: str, _type_name: str, on_message: OnMessage, *, latched: bool = False) -> None:
         del latched
         for message in self.messages.get(topic, []):
-            on_message(message)
+            on_message(message, NOW)
 
     def publish(self, _topic: str, _type_name: str, _payload: bytes, *, latched: bool = False) -> None:
         del latched
@@ -104,12 +102,16 @@ def roles(
     )
 
 
+def topics_of(taken: Roles) -> list[Topic]:
+    return [topic for _, topic in uses_of(taken)]
+
+
 @pytest.mark.parametrize("oriented", [True, False])
 def test_an_imu_without_an_orientation_gives_no_headings(oriented: bool) -> None:
     said: list[str] = []
     wire = Wire({"/imu": [imu(oriented=oriented)] * 3})
     chosen = roles(FIX, headed=True, gyro=True)
-    found = with_oriented_imu(FirstMessages(wire, role_topics(chosen)), chosen, said.append)
+    found = with_oriented_imu(FirstMessages(wire, topics_of(chosen)), chosen, said.append)
     assert only_positions(found) is not oriented
     assert found.gyro == GYRO
     assert said == ([] if oriented else ["/imu has no orientation: its yaw rates are used"])
@@ -128,7 +130,7 @@ def lidar(w: float, qx: float = 0.0) -> bytes:
 def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float) -> None:
     said: list[str] = []
     wire = Wire({"/lidar": [lidar(w)] * 3})
-    first = FirstMessages(wire, role_topics(roles(LIDAR)))
+    first = FirstMessages(wire, topics_of(roles(LIDAR)))
     positions, attitude = first_poses(first, roles(LIDAR), said.append)
     assert positions is (w == 0.0)
     assert not attitude
@@ -144,7 +146,7 @@ def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float)
 
 def test_poses_with_a_roll_or_a_pitch_are_learned_from_with_terms_of_gravity() -> None:
     def seen(chosen: Roles, messages: dict[str, list[bytes]]) -> FirstPoses:
-        return first_poses(FirstMessages(Wire(messages), role_topics(chosen)), chosen, print)
+        return first_poses(FirstMessages(Wire(messages), topics_of(chosen)), chosen, print)
 
     tilted = [lidar(1.0), lidar(0.96, 0.28), lidar(1.0)]
     assert seen(roles(LIDAR), {"/lidar": tilted}) == (False, True)
@@ -155,17 +157,17 @@ def test_poses_with_a_roll_or_a_pitch_are_learned_from_with_terms_of_gravity() -
 
 def test_what_came_before_it_was_known_how_it_is_read_is_learned_from_in_order() -> None:
     wire = Wire({})
-    takers: dict[str, Callable[[bytes], None]] = {}
+    takers: dict[str, OnMessage] = {}
     wire.subscribe = lambda topic, _kind, take, *, latched=False: takers.setdefault(topic, take)  # type: ignore[method-assign]
     chosen = roles(LIDAR, others=(Topic("/mocap", POSE_STAMPED, 1),))
     chosen = replace(chosen, wheel=None)
-    first = FirstMessages(wire, role_topics(chosen))
+    first = FirstMessages(wire, topics_of(chosen))
     for topic in ("/mocap", "/lidar", "/mocap"):
-        takers[topic](lidar(1.0))
+        takers[topic](lidar(1.0), NOW)
     found: list[Sample] = []
     transport = RosTransport(wire, chosen, LogOptions(), name="slipwise", first=first)
     transport.subscribe(found.append)
-    takers["/lidar"](lidar(1.0))
+    takers["/lidar"](lidar(1.0), NOW)
     assert [sample.source for sample in found if isinstance(sample, Pose)] == ["/mocap", "", "/mocap", ""]
 
 

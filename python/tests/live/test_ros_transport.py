@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 from live.sample_outputs import next_moves, odometry_at, straight_path, surface_at, waiting_status
@@ -18,12 +16,13 @@ from slipwise.live.ros_transport import CLOCK_TYPE, CueTopics, RosTransport
 from slipwise.live.samples import Pose, Request, Sample, SurfaceCue, Unusable, Wheels
 from slipwise.live.typed_messages import COMMANDS
 from slipwise.live.wires.ros_types import ros_types
-from slipwise.live.wires.wire import WireTopic
+from slipwise.live.wires.wire import OnMessage, WireTopic
 from slipwise.logs.messages import ODOMETRY
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import Topic
 from slipwise.logs.topics import Roles
 
+NOW = 1e9  # s
 CHOSEN = Topic("/odom", ODOMETRY, 1)
 LATCHED = {name for name, topic in TOPICS.items() if topic.latched}
 
@@ -35,14 +34,12 @@ class Wire:
 
     def __init__(self, *heard: str) -> None:
         self.heard, self.published = set(heard), list[str]()
-        self.takers: dict[str, Callable[[bytes], None]] = {}
+        self.takers: dict[str, OnMessage] = {}
 
     def topics(self) -> list[WireTopic]:
         return []
 
-    def subscribe(
-        self, topic: str, _type_name: str, on_message: Callable[[bytes], None], *, latched: bool = False
-    ) -> None:
+    def subscribe(self, topic: str, _type_name: str, on_message: OnMessage, *, latched: bool = False) -> None:
         assert not latched
         self.takers[topic] = on_message
 
@@ -139,8 +136,8 @@ def test_an_odometry_that_is_wheels_and_pose_gives_both_as_decoding_in_full_does
     messages: list[bytes] = []
     sent.publish = lambda _topic, _kind, payload, *, latched=False: messages.append(payload)  # type: ignore[method-assign]
     transport_on(sent).publish(odometry_at(12.5))
-    wire.takers["/odom"](messages[0])
-    wire.takers["/odom"](messages[0][:40])  # cut off: said once, left out
+    wire.takers["/odom"](messages[0], NOW)
+    wire.takers["/odom"](messages[0][:40], NOW)  # cut off: said once, left out
     message = ros_types().deserialize_cdr(messages[0], ODOMETRY)
     whole = [to_wheels(ODOMETRY, LogOptions())(message, 12.5), to_pose(ODOMETRY, LogOptions())(message, 12.5)]
     assert samples[:2] == whole
@@ -170,8 +167,8 @@ def test_labels_come_on_two_topics_and_a_change_on_its_own() -> None:
     string, empty = store.types["std_msgs/msg/String"], store.types["std_msgs/msg/Empty"]
     for topic, text in (("/slipwise/terrain", "sand"), ("/label", "gravel"), ("/label", "")):
         message = string(text)  # type: ignore[call-arg]
-        wire.takers[topic](bytes(store.serialize_cdr(message, "std_msgs/msg/String")))
-    wire.takers["/slipwise/terrain_changed"](bytes(store.serialize_cdr(empty(), "std_msgs/msg/Empty")))
+        wire.takers[topic](bytes(store.serialize_cdr(message, "std_msgs/msg/String")), NOW)
+    wire.takers["/slipwise/terrain_changed"](bytes(store.serialize_cdr(empty(), "std_msgs/msg/Empty")), NOW)
     assert [sample for sample in samples if isinstance(sample, SurfaceCue)] == [
         SurfaceCue("sand"),
         SurfaceCue("gravel"),
@@ -200,7 +197,7 @@ def test_a_prediction_is_asked_for_with_one_message_however_the_robot_turns(name
     store, axes = ros_types(), ("t", "v", "vy", "omega")
     numbers = dict(zip(axes, map(np.array, ([0.0, 1.0], [0.5, 0.6], [], [0.1, 0.2])), strict=True))
     message = store.types[COMMANDS](horizon=3.0, **numbers)  # type: ignore[call-arg]
-    wire.takers["/slipwise/predict"](bytes(store.serialize_cdr(message, COMMANDS)))
+    wire.takers["/slipwise/predict"](bytes(store.serialize_cdr(message, COMMANDS)), NOW)
     (request,) = samples
     assert isinstance(request, Request)
     rows, horizon = asked_commands(request.content, names, newest=10.0, horizon=2.0)

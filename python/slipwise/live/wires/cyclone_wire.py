@@ -6,7 +6,6 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +26,7 @@ from slipwise.live.wires.wire import OnMessage, WireTopic
 _log = logging.getLogger(__name__)
 _DEPTH = 1000  # messages kept for who is busy, on either side: 10 s at 100 Hz
 _WAIT = 200_000_000  # ns
+_PAUSE = 0.005  # s after messages were taken
 _LOOK = 0.25  # s between looks for silent topics
 
 
@@ -34,7 +34,7 @@ _LOOK = 0.25  # s between looks for silent topics
 class _Subscription:
     topic: str
     type_name: str
-    deliver: Callable[[bytes], None]
+    deliver: OnMessage
     latched: bool
     quality: Quality
     reader: Any
@@ -206,6 +206,9 @@ class CycloneWire:
             self._waitset.wait(_WAIT)
             for subscription in self._subscriptions:
                 self._deliver(subscription)
+            time.sleep(
+                _PAUSE
+            )  # a wake-up for each message of several streams would cost more than their reading
             with self._lock:
                 if self._closed.is_set():
                     return
@@ -221,8 +224,9 @@ class CycloneWire:
         except OSError:
             _log.exception("%s cannot be read", subscription.topic)
             return
+        arrived = time.time()
         for message in messages:
-            subscription.deliver(message)
+            subscription.deliver(message, arrived)
 
     def _adapt(self) -> None:
         """Read again where a publisher offers less than is asked for."""

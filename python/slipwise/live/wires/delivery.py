@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable
-from typing import Any
 
 from slipwise.errors import SettingsError
 from slipwise.live.wires.silence import SilenceWatch
@@ -27,17 +25,15 @@ class Delivery:
         #: Set where the wire is closed: nothing is handed over any more.
         self.closed = threading.Event()
 
-    def to(
-        self, topic: str, on_message: OnMessage, to_bytes: Callable[[Any], bytes] = bytes
-    ) -> Callable[[Any], None]:
-        """Return what a middleware calls with each message of a topic, which `to_bytes` makes CDR of."""
+    def to(self, topic: str, on_message: OnMessage) -> OnMessage:
+        """Return what is called with each message of a topic."""
 
-        def deliver(message: Any) -> None:
+        def deliver(message: bytes, arrived: float) -> None:
             if self.closed.is_set():
                 return
             self._silence.received(topic)
             try:
-                on_message(to_bytes(message))
+                on_message(message, arrived)
             except Exception:
                 _log.exception("a message of %s was not understood", topic)
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import logging
 import os
 import threading
-from collections.abc import Callable
+import time
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
@@ -15,12 +15,14 @@ from slipwise.errors import SettingsError
 from slipwise.live.wires.delivery import Delivery
 from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.quality import Quality, hearing_all
+from slipwise.live.wires.rclpy_inbox import left_to_us, take_all
 from slipwise.live.wires.silence import PublisherSeen, SilenceWatch
 from slipwise.live.wires.topic_names import require_topic
 from slipwise.live.wires.wire import OnMessage, WireTopic
 
 _log = logging.getLogger(__name__)
 _DEPTH = 1000  # messages kept for who is busy, on either side
+_ROUND = 0.005  # s between two rounds of taking what waits
 _LOOK = 0.25  # s between looks at who publishes
 
 
@@ -28,14 +30,17 @@ _LOOK = 0.25  # s between looks at who publishes
 class _Subscription:
     topic: str
     type_name: str
-    deliver: Callable[[bytes], None]
+    deliver: OnMessage
     latched: bool
     quality: Quality
     entity: Any
+    publishers: int = -1  # at the last look
 
 
 class RclpyWire:
-    """A node in a context and a thread of its own, whose subscriptions give bytes; or a node of others.
+    """A node in a context of its own, whose subscriptions give bytes; or a node of others.
+
+    A thread takes what waits in the subscriptions, in rounds. All else, such as services, is the executor's.
 
     Signals stay with the program. Where neither the options nor ROS_AUTOMATIC_DISCOVERY_RANGE ask for the
     network, that variable is set to this host alone.
@@ -52,7 +57,6 @@ class RclpyWire:
 
     def __init__(self, options: WireOptions, node: Any = None) -> None:
         rclpy: Any = import_module("rclpy")
-        clock: Any = import_module("rclpy.clock")
         self._node: Any = _own_node(options) if node is None else node
         self._middleware = str(rclpy.get_rmw_implementation_identifier())
         self._publishers: dict[str, Any] = {}
@@ -62,16 +66,16 @@ class RclpyWire:
         self._lock = threading.RLock()
         self._delivery = Delivery(self._silence)
         self._closed = self._delivery.closed
-        steady = clock.Clock(clock_type=clock.ClockType.STEADY_TIME)  # that of the node may be simulated
-        self._timer = self._node.create_timer(_LOOK, self._look, clock=steady)
+        self._group: Any = left_to_us()
         self._executor: Any = None
-        self._thread: threading.Thread | None = None
+        self._threads = [threading.Thread(target=self._receive, name="slipwise-rclpy", daemon=True)]
         if node is None:
             executors: Any = import_module("rclpy.executors")
             self._executor = executors.SingleThreadedExecutor(context=self._node.context)
             self._executor.add_node(self._node)
-            self._thread = threading.Thread(target=self._spin, name="slipwise-rclpy", daemon=True)
-            self._thread.start()
+            self._threads.append(threading.Thread(target=self._spin, name="slipwise-spin", daemon=True))
+        for thread in self._threads:
+            thread.start()
 
     def topics(self) -> list[WireTopic]:
         """Return what is published by others now.
@@ -177,19 +181,20 @@ class RclpyWire:
             if self._closed.is_set():
                 return
             self._closed.set()
-        if self._thread is None:
+        if self._executor is not None:
+            self._executor.shutdown()
+        for thread in self._threads:
+            if thread is not threading.current_thread():
+                thread.join()
+        if self._executor is None:
             self._leave_node()
             return
-        self._executor.shutdown()
-        if threading.current_thread() is not self._thread:
-            self._thread.join()
         self._node.destroy_node()
         self._node.context.try_shutdown()
 
     def _leave_node(self) -> None:
         """Take away what was made on a node of others."""
         node = self._node
-        node.destroy_timer(self._timer)
         for made in self._subscriptions:
             node.destroy_subscription(made.entity)
         for publisher in self._publishers.values():
@@ -207,26 +212,48 @@ class RclpyWire:
             except Exception:
                 _log.exception("rclpy stumbled, and goes on")
 
+    def _receive(self) -> None:
+        look = 0.0
+        while not self._closed.is_set() and self._node.context.ok():
+            try:
+                with self._lock:
+                    waiting = take_all([(made.entity, made.deliver) for made in self._subscriptions])
+                for arrived, message, deliver in waiting:
+                    deliver(message, arrived)
+                if time.monotonic() >= look:
+                    look = time.monotonic() + _LOOK
+                    self._look()
+            except Exception:
+                if self._node.context.ok():
+                    _log.exception("messages cannot be taken")
+                time.sleep(_LOOK)
+            time.sleep(_ROUND)
+
     def _look(self) -> None:
         """Subscribe again where a publisher offers less than is asked for, and note who publishes."""
         with self._lock:
             if self._closed.is_set():
                 return
             for made in self._subscriptions:
+                publishers = self._node.count_publishers(made.topic)
+                connected = made.entity.get_publisher_count()
+                if publishers == connected == made.publishers and self._silence.heard(made.topic):
+                    continue  # nobody came or went; to ask for each takes ten times as long
+                made.publishers = publishers
                 quality = hearing_all(self._offered(made.topic), latched=made.latched)
                 if quality != made.quality:
                     made.quality = quality
                     before, made.entity = made.entity, self._make_subscription(made)
                     self._node.destroy_subscription(before)
-                publishers = self._node.get_publishers_info_by_topic(made.topic)
-                connected = made.entity.get_publisher_count() > 0
-                seen = [PublisherSeen(self._middleware, found.topic_type, connected) for found in publishers]
+                offering = self._node.get_publishers_info_by_topic(made.topic)
+                matched = made.entity.get_publisher_count() > 0
+                seen = [PublisherSeen(self._middleware, found.topic_type, matched) for found in offering]
                 self._silence.seen(made.topic, seen)
 
     def _make_subscription(self, made: _Subscription) -> Any:
         profile = _profile(made.quality, depth=_DEPTH)
         return self._node.create_subscription(
-            _class_of(made.type_name), made.topic, made.deliver, profile, raw=True
+            _class_of(made.type_name), made.topic, made.deliver, profile, callback_group=self._group, raw=True
         )
 
     def _offered(self, topic: str) -> list[Quality]:

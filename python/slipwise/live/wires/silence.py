@@ -54,6 +54,11 @@ class SilenceWatch:
         if wanted is not None:
             wanted.received = True
 
+    def heard(self, topic: str) -> bool:
+        """Return whether a message came, after which who publishes is of no concern."""
+        wanted = self._topics.get(topic)
+        return wanted is not None and wanted.received
+
     def seen(self, topic: str, publishers: list[PublisherSeen]) -> None:
         """Take note of who publishes on a topic now."""
         with self._lock:

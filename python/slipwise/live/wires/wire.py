@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-OnMessage = Callable[[bytes], None]
+OnMessage = Callable[[bytes, float], None]  # a message, and when it arrived [s since 1970]
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ _Evidence = _core.MotionEvidence | _core.RecentEvidence
 _MOVING = 0.05  # [m] by the wheels
 _ENOUGH = 10  # pairs of poses
 _APART = 0.3  # [s] the clocks of poses and wheels are tried apart by at most this,
-_STEPS = (0.005, 0.0005)  # [s] in coarse steps, then in fine ones
+_STEPS = (0.02, 0.0025, 0.0005)  # [s] in coarse steps, then in finer ones around the best
 _SAME_HEADING = 3e-4  # [rad] no sensor of headings is better over a second,
 _SAME_TURN = 1e-3  # and no wheels turn a robot by what they say so exactly
 _SAME_WAY = 3e-3  # of the distance along the heading; how wheels are integrated changes as much
@@ -99,4 +99,5 @@ def _at(evidence: _Evidence, offset: float) -> _Difference | None:
         distance[moving],
         np.abs(wheels[moving, 2]),
     )
-    return _Difference(*np.median(differences, axis=1).tolist())  # one call: each takes longer than its sums
+    ordered, half = np.sort(differences, axis=1), (len(apart) - 1) // 2
+    return _Difference(*(0.5 * (ordered[:, half] + ordered[:, len(apart) // 2])).tolist())  # medians

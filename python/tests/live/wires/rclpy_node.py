@@ -29,12 +29,12 @@ class Asked:
         self.heard: dict[str, list[str]] = {"/odom": [], "/imu": [], "/robot_description": []}
         for topic, kind in (("/odom", "nav_msgs/msg/Odometry"), ("/imu", "sensor_msgs/msg/Imu")):
             self.wire.subscribe(
-                topic, kind, lambda message, topic=topic: self.heard[topic].append(message.hex())
+                topic, kind, lambda message, _, topic=topic: self.heard[topic].append(message.hex())
             )
         self.wire.subscribe(
             "/robot_description",
             "std_msgs/msg/String",
-            lambda m: self.heard["/robot_description"].append(m.hex()),
+            lambda m, _: self.heard["/robot_description"].append(m.hex()),
             latched=True,
         )
         self.wire.advertise("/cmd_vel", TWIST)

@@ -25,6 +25,7 @@ from slipwise.errors import SettingsError
 from slipwise.live.wires.cyclone_wire import CycloneWire
 from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.ros_types import type_hash
+from slipwise.live.wires.wire import OnMessage
 
 pytest.importorskip("cyclonedds")
 
@@ -43,13 +44,17 @@ def other() -> Iterator[CycloneWire]:
     opened.close()
 
 
+def keep(messages: list[bytes]) -> OnMessage:
+    return lambda message, _arrived: messages.append(message)
+
+
 def places(messages: list[bytes]) -> list[float]:
     return [from_cdr(ODOMETRY, message).pose.pose.position.x for message in messages]
 
 
 def test_bytes_arrive_as_they_were_sent(wire: CycloneWire, other: CycloneWire) -> None:
     got: list[bytes] = []
-    wire.subscribe("/bytes", TWIST, got.append)
+    wire.subscribe("/bytes", TWIST, keep(got))
     sent = [command(number) for number in range(20)]
     for message in sent:
         other.publish("/bytes", TWIST, message)
@@ -61,7 +66,7 @@ def test_who_comes_later_gets_the_latched_message(wire: CycloneWire, other: Cycl
     got: list[bytes] = []
     other.publish("/latched", STRING, to_cdr(STRING, data="first"), latched=True)
     other.publish("/latched", STRING, to_cdr(STRING, data="last"), latched=True)
-    wire.subscribe("/latched", STRING, got.append, latched=True)
+    wire.subscribe("/latched", STRING, keep(got), latched=True)
     assert wait_until(lambda: got)
     assert [from_cdr(STRING, message).data for message in got] == ["last"]
 
@@ -78,7 +83,7 @@ def test_publishers_of_others_are_listed(wire: CycloneWire, other: CycloneWire) 
 def test_a_callback_that_fails_does_not_stop_the_others(wire: CycloneWire, other: CycloneWire) -> None:
     got: list[bytes] = []
 
-    def fail(message: bytes) -> None:
+    def fail(message: bytes, _arrived: float) -> None:
         got.append(message)
         raise ValueError("not understood")
 
@@ -98,7 +103,7 @@ def test_unknown_types_and_relative_names_are_refused(wire: CycloneWire) -> None
 def test_a_closed_wire_leaves_no_thread_and_may_be_closed_again() -> None:
     before = set(threading.enumerate())
     opened = CycloneWire(WireOptions(node_name="short", domain=DOMAIN))
-    opened.subscribe("/odom", ODOMETRY, lambda message: None)
+    opened.subscribe("/odom", ODOMETRY, lambda _message, _arrived: None)
     opened.close()
     opened.close()
     assert set(threading.enumerate()) <= before
@@ -119,7 +124,7 @@ def test_a_refused_publisher_is_said_once_with_the_ways_out(wire: CycloneWire) -
     elsewhere = Publisher(participant, qos=Qos(Policy.Partition(partitions=["elsewhere"])))
     topic = Topic(participant, "rt/refused", cyclone_type(ODOMETRY))
     writer = DataWriter(elsewhere, topic)
-    wire.subscribe("/refused", ODOMETRY, lambda message: None)
+    wire.subscribe("/refused", ODOMETRY, lambda _message, _arrived: None)
     said: list[str] = []
     assert wait_until(lambda: said.extend(wire.notices()) or any("/refused" in text for text in said))
     text = next(text for text in said if "/refused" in text)
@@ -133,7 +138,7 @@ def test_a_refused_publisher_is_said_once_with_the_ways_out(wire: CycloneWire) -
 @pytest.mark.slow
 def test_odometry_of_a_real_node_arrives_whole_and_in_order(wire: CycloneWire, robot: Peer) -> None:
     got: list[bytes] = []
-    wire.subscribe("/odom", ODOMETRY, got.append)
+    wire.subscribe("/odom", ODOMETRY, keep(got))
     wire.advertise("/cmd_vel", TWIST)
     assert robot.ask("match")
     assert wait_until(lambda: wire.connections("/odom"))
@@ -167,8 +172,8 @@ def test_a_real_node_sees_our_name_and_the_hash_of_our_type(wire: CycloneWire, r
 def test_best_effort_and_latched_topics_of_a_real_node_are_heard(wire: CycloneWire, robot: Peer) -> None:
     imu: list[bytes] = []
     text: list[bytes] = []
-    wire.subscribe("/imu", "sensor_msgs/msg/Imu", imu.append)
-    wire.subscribe("/robot_description", STRING, text.append, latched=True)
+    wire.subscribe("/imu", "sensor_msgs/msg/Imu", keep(imu))
+    wire.subscribe("/robot_description", STRING, keep(text), latched=True)
     assert wait_until(lambda: text)
     assert from_cdr(STRING, text[0]).data == "<robot/>"
     assert wait_until(lambda: robot.ask("drive", count=20, rate=200) and imu)
@@ -200,7 +205,7 @@ def test_a_real_node_that_dies_and_returns_is_heard_again(
     wire: CycloneWire, ros_python: Path, tmp_path: Path
 ) -> None:
     got: list[bytes] = []
-    wire.subscribe("/odom", ODOMETRY, got.append)
+    wire.subscribe("/odom", ODOMETRY, keep(got))
     wire.advertise("/cmd_vel", TWIST)
     for _ in range(2):
         with Peer(ros_python, "jazzy_node.py", environment={"ROS_LOG_DIR": str(tmp_path)}) as robot:
