@@ -3,9 +3,9 @@
 
 Processor time: the command as a process of its own on Cyclone DDS, hearing commands at 100 Hz, wheel speeds
 at 50 Hz and poses at 20 Hz from another process in real time, publishing all it has; after `make ros-peer`
-also on rclpy, and a bare rclpy node that hears the same and publishes odometry at 50 Hz. Memory: the node over
-a simulated day (`driven_day`), as fast as it goes. Kill: a node that saves several times a second is killed at
-random instants; then its cache is read, and a node goes on from it.
+also on rclpy, and a bare rclpy node that hears the same and publishes odometry at 50 Hz. Memory: the node
+over a simulated day (`driven_day`), as fast as it goes. Kill: a node that saves several times a second is
+killed at random instants; then its cache is read, and a node goes on from it.
 
     python benchmarks/live_node.py --seconds 60 --hours 24 --kills 200 --json live.json
 """

@@ -11,7 +11,7 @@ from slipwise.live.wires.rclpy_inbox import take_all
 
 
 class Handle(nullcontext[None]):
-    """Of a subscription, with messages and when the middleware says that they came [s]; 0: it does not say."""
+    """Of a subscription: messages, and when the middleware says that they came [s]; 0: it does not say."""
 
     def __init__(self, *waiting: tuple[bytes, float]) -> None:
         super().__init__()
