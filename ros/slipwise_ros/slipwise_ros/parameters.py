@@ -68,7 +68,7 @@ def declare(node: Node) -> None:
     for each in declared():
         about = ParameterDescriptor(
             description=each.help,
-            dynamic_typing=each.default is None,
+            dynamic_typing=each.default is None or isinstance(each.default, str),  # to YAML, off is no text
             additional_constraints=f"such as {each.example}" if each.example else "",
         )
         node.declare_parameter(each.name, each.default, about)
@@ -82,7 +82,7 @@ def chosen(node: Node) -> tuple[Settings, LogOptions]:
     Raises:
         SlipwiseError: a value is wrong.
     """
-    values = {each.name: node.get_parameter(each.name).value for each in declared()}
+    values = {each.name: _declared(each, node.get_parameter(each.name).value) for each in declared()}
     given = {name: value for name, value in values.items() if value is not None and value != ""}
     file = Path(given.pop("settings")) if "settings" in given else None
     keys = {key.path: key.default for key in keys_of(Settings)}
@@ -92,6 +92,13 @@ def chosen(node: Node) -> tuple[Settings, LogOptions]:
     settings = with_memory(live_settings(settings, own))
     logged = {field.name: _option(node, field, given.get(field.name)) for field in LOG_FIELDS}
     return settings, log_options(logged, file, changes)
+
+
+def _declared(each: Declared, value: Any) -> Any:
+    """Return a value as it was meant: `live.apply.mode:=off` reaches ROS as false, by the rules of YAML."""
+    if isinstance(value, bool) and isinstance(each.default, str):
+        return "on" if value else "off"
+    return value
 
 
 def _toml(value: Any) -> str:

@@ -18,8 +18,9 @@ from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import DescribeParameters, SetParameters
+from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import serialize_message
 from slipwise_msgs.msg import MotionModel, SlipState
@@ -79,6 +80,10 @@ class Manager:
             request = SetParameters.Request(parameters=[Parameter(name=asked["name"], value=value)])
             (done,) = self.call(SetParameters, "set_parameters", request).results
             return [done.successful, done.reason]
+        if do == "get":
+            asking = GetParameters.Request(names=asked["names"])
+            found = self.call(GetParameters, "get_parameters", asking).values
+            return dict(zip(asked["names"], map(parameter_value_to_python, found), strict=True))
         if do == "describe":
             request = DescribeParameters.Request(names=asked["names"])
             found = self.call(DescribeParameters, "describe_parameters", request).descriptors

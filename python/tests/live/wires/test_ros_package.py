@@ -17,6 +17,7 @@ from typing import Any
 
 import pytest
 from live.typed_model import assert_same_numbers
+from live.wires.launched import ros_arguments
 from live.wires.peer import ROOT, Peer
 from live.wires.test_live_on_ros import RATES, ROS, later, messages, without_origin
 from sample_logs import simulated_log
@@ -30,6 +31,7 @@ from slipwise.live.wires.ros_types import ros_types
 from slipwise.models.model import parse_model
 
 NODE = "/robot_1/slipwise"
+LAUNCH_FILE = ROOT / "ros/slipwise_ros/launch/live.launch.xml"
 START = (
     f"import site; site.addsitedir({sysconfig.get_path('purelib')!r}); "
     "from slipwise_ros.live import main; main()"
@@ -48,12 +50,12 @@ def parameters(cache: Path) -> list[str]:
 
 
 @contextmanager
-def slipwise_ros(python: Path, cache: Path) -> Iterator[subprocess.Popen[str]]:
+def slipwise_ros(python: Path, arguments: list[str]) -> Iterator[subprocess.Popen[str]]:
     """Run the node as `ros2 run slipwise_ros live` does."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")} | ROS
     environment["PYTHONFAULTHANDLER"] = "1"
     with subprocess.Popen(
-        [str(python), "-c", START, *parameters(cache)], env=environment, stderr=subprocess.PIPE, text=True
+        [str(python), "-c", START, *arguments], env=environment, stderr=subprocess.PIPE, text=True
     ) as node:
         try:
             yield node
@@ -97,7 +99,7 @@ def test_a_managed_node_learns_what_calibrate_does_and_answers(ros_python: Path,
     lines = messages(bag, tmp_path / "lines")
     wanted = without_origin(sw.calibrate(sw.open_log(bag), input="command").model.to_yaml())
     with (
-        slipwise_ros(ros_python, cache) as node,
+        slipwise_ros(ros_python, parameters(cache)) as node,
         Peer(ros_python, "lifecycle_node.py", NODE, environment=ROS) as peer,
     ):
         assert peer.ask("state") == "unconfigured"
@@ -154,6 +156,22 @@ def beginning(lines: Path) -> Path:
     return first
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("apply", "mode"), [("off", False), ("manual", "manual")])  # to YAML, off is false
+def test_the_node_starts_with_the_arguments_of_its_launch_file(
+    ros_python: Path, tmp_path: Path, apply: str, mode: object
+) -> None:
+    given = {"namespace": "robot_1", "name": "husky-1", "pose_topic": "/pose", "cache": str(tmp_path)}
+    arguments = ros_arguments(LAUNCH_FILE, {**given, "apply": apply, "use_sim_time": "true"})
+    with (
+        slipwise_ros(ros_python, arguments),
+        Peer(ros_python, "lifecycle_node.py", NODE, environment=ROS) as peer,
+    ):
+        assert peer.ask("state") == "active"
+        kept = {"name": "husky-1", "pose_topic": "/pose", "live.apply.mode": mode, "use_sim_time": True}
+        assert peer.ask("get", names=list(kept)) == kept
+
+
 def test_the_layout_shows_topics_and_fields_that_there_are() -> None:
     layout = json.loads((ROOT / "ros/slipwise_ros/layouts/slipwise.json").read_text())
     text = json.dumps(layout)
@@ -170,7 +188,7 @@ def test_the_layout_shows_topics_and_fields_that_there_are() -> None:
 
 
 def test_the_launch_file_gives_parameters_that_the_node_has() -> None:
-    root = ET.parse(ROOT / "ros/slipwise_ros/launch/live.launch.xml").getroot()
+    root = ET.parse(LAUNCH_FILE).getroot()
     arguments = {each.attrib["name"] for each in root.iter("arg")}
     (node,) = root.iter("node")
     assert (node.attrib["pkg"], node.attrib["exec"]) == ("slipwise_ros", "live")
