@@ -11,7 +11,8 @@ from slipwise.logs.findings.clocks import CLOCKS
 from slipwise.logs.findings.command_answers import DeadBand, EchoedCommands, Overridden
 from slipwise.logs.findings.command_stops import CommandTimeout
 from slipwise.logs.findings.course_heading import CourseHeading
-from slipwise.logs.findings.encoders import WheelSpikes
+from slipwise.logs.findings.drifting_poses import DriftingPoses
+from slipwise.logs.findings.encoders import ReversalJumps, WheelSpikes
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.gyro_turns import GyroTurnsOtherwise
 from slipwise.logs.findings.headings import (
@@ -22,10 +23,12 @@ from slipwise.logs.findings.headings import (
     TurnedPoses,
     UnlikelySpeed,
 )
+from slipwise.logs.findings.late_answers import LateAnswers
 from slipwise.logs.findings.plausibility import ENOUGH, ENOUGH_TURN, Implausible, UnreachablePoses
 from slipwise.logs.findings.pose_streams import ClockDrift, ClockOffset, FrozenPoses
 from slipwise.logs.findings.readings import READINGS
 from slipwise.logs.findings.repeated_wheels import RepeatedWheels
+from slipwise.logs.findings.saturation import Saturated
 from slipwise.logs.findings.seen import Seen, WholeLog
 from slipwise.logs.findings.sensor_place import SensorOffCentre
 from slipwise.logs.findings.sources import TwoSources
@@ -63,16 +66,30 @@ WHOLE: tuple[Check, ...] = (
     CommandTimeout(),
     ArmJoints(),
     WheelSpikes(),
+    ReversalJumps(),
     EchoedCommands(),
     DeadBand(),
+    Saturated(),
+    LateAnswers(),
     Overridden(),
     FrozenPoses(),
+    DriftingPoses(),
     ClockOffset(),
     ClockDrift(),
     TwoSources(),
 )
 #: What a live node looks for in its last minutes; two sources it watches sample by sample.
-OF_STREAM: tuple[Check, ...] = (WheelSpikes(), EchoedCommands(), Overridden(), FrozenPoses(), ClockOffset())
+OF_STREAM: tuple[Check, ...] = (
+    WheelSpikes(),
+    ReversalJumps(),
+    EchoedCommands(),
+    Saturated(),
+    LateAnswers(),
+    Overridden(),
+    FrozenPoses(),
+    DriftingPoses(),
+    ClockOffset(),
+)
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(
     {c.kind: c for c in (*FIRST, *THEN, *WHOLE, *CLOCKS, *TOPICS, *READINGS)}.values()

@@ -7,14 +7,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from contradictory_logs import SKID_STEERED, sound_log
-from faulty_logs import found_in, not_found
+from faulty_logs import drifting, found_in, not_found
 
-from slipwise.logs import Log, LogOptions, open_log
+from slipwise.logs import Inputs, Log, LogOptions, Poses, open_log
 from slipwise.logs.findings.checks import EVERY
 from slipwise.logs.findings.diagnose import diagnose_log
+from slipwise.logs.findings.drifting_poses import DriftingPoses
 from slipwise.logs.findings.finding import FAMILIES
+from slipwise.logs.findings.seen import WholeLog
 
 REAL = (
     "husky/tile_deflated_tyres",
@@ -24,11 +27,22 @@ REAL = (
     "f1tenth/DS3",
     "create/MRCLAM6_R1",
 )
+#: Five logs for each, with those of REAL.
+FURTHER = {
+    "capped drive": (
+        "data/warthog/grass_7_18_16h59s20",
+        "vehicles/fomo_warthog_red_2025-10-14",
+        "foreign/bullet/husky",
+    ),
+    "ticks jump": ("data/warthog/grass_7_18_16h59s20", "data/f1tenth/DS4"),
+    "multipath": ("data/warthog/grass_7_18_16h59s20", "data/warthog/grass"),
+}
 #: What is true of these logs, and therefore found.
 TRUE = {
     "LVMS_23_01_04_B": {"echoed-commands"},  # its commands are the speed of the rear wheels
     "dart_rubbery_floor": {"does-not-move"},  # its throttle acts only where a safety switch is on
     "dart_steering_steps_rubbery": {"does-not-move"},  # the same
+    "wetgrass_bad_poses": {"saturated"},  # its drive turns at 1 rad/s at most, and 1.6 are commanded
     "husky_weak_motors": {"does-not-move"},  # at its end the wheels turn at 0.5 m/s and the poses stand
 }
 
@@ -43,7 +57,28 @@ def real_log(path: Path) -> Log:
 def test_each_fault_is_found_in_a_simulated_drive() -> None:
     log = sound_log(replace(SKID_STEERED, seconds=150.0))
     assert found_in(log) == ()
-    assert not_found(log) == []
+    assert not_found(log, "simulated") == []
+
+
+def test_positions_that_drift_are_found_while_the_robot_stands() -> None:
+    sound = sound_log(replace(SKID_STEERED, seconds=60.0))
+    (run,) = sound.runs
+    assert run.wheels is not None
+    t, rest = np.arange(0.0, 30.0, 0.1), np.zeros(300)
+    stood = replace(
+        run,
+        commands=None,
+        wheels=Inputs(t=t, v=rest, vy=rest, omega=rest),
+        poses=Poses(t=t, x=0.01 * np.cos(7.0 * t), y=rest, yaw=rest, frame=np.zeros(300, np.int64)),
+    )
+    drifted = replace(stood, poses=drifting(stood.poses))
+    found = DriftingPoses().look_at(WholeLog(replace(sound, runs=(drifted,)), "wheel"))
+    assert found is not None
+    assert found.sentence.startswith("positions drift by ")
+    assert found.evidence == pytest.approx(
+        float(np.hypot(np.ptp(drifted.poses.x), np.ptp(drifted.poses.y))), rel=0.2
+    )
+    assert DriftingPoses().look_at(WholeLog(replace(sound, runs=(stood,)), "wheel")) is None
 
 
 @pytest.mark.slow
@@ -51,6 +86,16 @@ def test_each_fault_is_found_in_real_logs(real_log_dir: Path) -> None:
     missed = []
     for name in REAL:
         missed += not_found(real_log(real_log_dir / f"{name}.csv.gz"), name.split("/")[1])
+    assert missed == []
+
+
+@pytest.mark.slow
+def test_what_not_every_drive_shows_is_found_in_further_logs(real_log_dir: Path) -> None:
+    missed = []
+    for fault, names in FURTHER.items():
+        for name in names:
+            log = real_log(real_log_dir.parent / f"{name}.csv.gz")
+            missed += not_found(log, name.split("/")[-1], [fault])
     assert missed == []
 
 
