@@ -183,8 +183,35 @@ def test_the_layout_shows_topics_and_fields_that_there_are() -> None:
         for field in path.split(".")[1:]:
             found = dict(fields[kind][1])[field]
             kind = found[1] if isinstance(found[1], str) else ""
+    (row,) = re.findall(r"parameters\[:\]{(\w+)==true}", text)  # a filter on rows of the model
+    assert row in dict(fields["slipwise_msgs/msg/Parameter"][1])
     panels = set(re.findall(r'"((?:3D|Plot|RawMessages)!\w+)"', json.dumps(layout["layout"])))
     assert panels == set(layout["configById"])
+
+
+#: Keys that the panels read, by the sources of Lichtblick (`PlotConfig`, `PlotPath`, `RendererConfig`, `RawMessages`), of
+#: which the layout may have some. An unknown one is ignored there, and nobody would see it.
+PANEL_KEYS = {
+    "3D": {"cameraState", "followMode", "followTf", "scene", "topics", "transforms", "layers"},
+    "Plot": {"paths", "showLegend", "isSynced", "foxglovePanelTitle", "lichtblickPanelTitle"},
+    "RawMessages": {"topicPath", "diffEnabled"},
+}
+PATH_KEYS = {"value", "enabled", "timestampMethod", "label", "color", "showLine", "lineSize"}
+
+
+def test_the_layout_says_what_panels_read() -> None:
+    layout = json.loads((ROOT / "ros/slipwise_ros/layouts/slipwise.json").read_text())
+    for name, config in layout["configById"].items():
+        assert config.keys() <= PANEL_KEYS[name.partition("!")[0]], name
+        for path in config.get("paths", []):
+            assert path.keys() <= PATH_KEYS
+            assert path["timestampMethod"] in ("receiveTime", "headerStamp")
+    view = layout["configById"]["3D!slipwise"]
+    assert view["followMode"] in ("follow-pose", "follow-position", "follow-none")
+    names = [topic.removeprefix("/slipwise/") for topic in view["topics"]]
+    shown = {name: TOPICS[name].type for name in names}
+    assert shown == {"predicted_path": "nav_msgs/msg/Path", "odometry": "nav_msgs/msg/Odometry"}
+    assert {each["type"] for each in view["topics"].values()} == {"line", "arrow"}
 
 
 def test_the_launch_file_gives_parameters_that_the_node_has() -> None:
