@@ -264,6 +264,8 @@ def kills(count: int) -> Kills:
         readable += found.learner is not None
         models += cache.model.exists() and load_model(cache.model) is not None
         went_on += "goes on" in found.said
+        cache.works()  # who is killed within seconds is not ended by its cache
+        cache.close()
         print(f"\r{k + 1} of {count} kills", end="", file=sys.stderr)
     print(file=sys.stderr)
     shutil.rmtree(folder)
