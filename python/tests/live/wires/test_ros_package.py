@@ -189,8 +189,8 @@ def test_the_layout_shows_topics_and_fields_that_there_are() -> None:
     assert panels == set(layout["configById"])
 
 
-#: Keys that the panels read, by the sources of Lichtblick (`PlotConfig`, `PlotPath`, `RendererConfig`,
-#: `RawMessages`), of which the layout may have some. An unknown one is ignored there, and nobody would see it.
+#: Keys that the panels read, by Lichtblick (`PlotConfig`, `PlotPath`, `RendererConfig`,
+#: `RawMessages`); the layout may have some. An unknown one is ignored there, and nobody would see it.
 PANEL_KEYS = {
     "3D": {"cameraState", "followMode", "followTf", "scene", "topics", "transforms", "layers"},
     "Plot": {"paths", "showLegend", "isSynced", "foxglovePanelTitle", "lichtblickPanelTitle"},
