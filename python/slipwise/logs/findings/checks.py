@@ -159,15 +159,31 @@ def findings_of(
         unknown_after: an input is unknown once it is older than this [s].
         sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
     """
-    seen = seen_in(log, input_name, unknown_after, sensor_yaw)
-    return (*findings_in(seen), *findings_of_log(WholeLog(log, input_name, unknown_after)))
+    return findings_of_each(log, (input_name,), unknown_after, sensor_yaw)
 
 
-def seen_in(log: Log, input_name: str, unknown_after: float, sensor_yaw: float = 0.0) -> Seen:
-    """Return poses against inputs of a log; arguments as of `findings_of`."""
+def findings_of_each(
+    log: Log, inputs: Iterable[str], unknown_after: float, sensor_yaw: float
+) -> tuple[Finding, ...]:
+    """Return what is wrong with poses and each of some inputs of a log; what no input changes, once."""
+    found: list[Finding] = []
+    before: Seen | None = None
+    for name in inputs:
+        seen = seen_in(log, name, unknown_after, sensor_yaw, before)
+        checks = [check for check in WHOLE if before is None or check.of_input]
+        found += (*findings_in(seen), *looked_at(WholeLog(log, name, unknown_after), checks))
+        before = seen
+    return tuple(found)
+
+
+def seen_in(
+    log: Log, input_name: str, unknown_after: float, sensor_yaw: float = 0.0, before: Seen | None = None
+) -> Seen:
+    """Return poses against inputs of a log; arguments as of `findings_of`, `before` of another input."""
     runs = [run for run in log.runs if has_input(run, input_name)]
+    same = before is not None and runs == [run for run in log.runs if has_input(run, before.input_name)]
     return Seen(
-        evidence=evidence_of(runs, unknown_after),
+        evidence=before.evidence if before is not None and same else evidence_of(runs, unknown_after),
         runs=[run.name for run in runs],
         input_name=input_name,
         positions=has_course(log.runs),

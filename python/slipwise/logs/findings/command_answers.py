@@ -79,6 +79,7 @@ class DeadBand(Check):
     """Commands that are too small to turn a wheel."""
 
     kind, family, spoils = "dead-band", "drive", False
+    of_input = True
     means = "commands below a size turn no wheel: a dead band of the drive larger than what the planner sends"
     shows = (
         "of commands held for 1.5 s, 95 % below it turn the wheels by less than 5 % of it, and 95 % above do"
@@ -130,6 +131,7 @@ class Overridden(Check):
     """Wheels that drive while the commands say stand."""
 
     kind, family, spoils = "overridden", "drive", False
+    of_input = True
     means = "somebody else drives: an operator's override, or the other inputs of a multiplexer (twist_mux)"
     shows = "for 5 s and more the wheels drive, 1.5 s after a command to stand that is repeated all the time"
     cure = "record what the multiplexer gives out; `[live] override_topic`; `--input wheel`"

@@ -94,6 +94,7 @@ class CommandTimeout(Check):
     """A watchdog that ends commands which a log takes to be held."""
 
     kind, family = "command-timeout", "drive"
+    of_input = True
     means = "commands come rarely: the robot's watchdog stops it in between, or it holds them for long"
     shows = "how long after a command the robot stops, and how far commands are apart"
     cure = "`--command-timeout S`; on the robot, send commands more often or raise `cmd_vel_timeout`"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from slipwise.addresses import shown
-from slipwise.logs.findings.checks import EVERY, findings_of
+from slipwise.logs.findings.checks import EVERY, findings_of_each
 from slipwise.logs.findings.finding import Finding, RefusedLogError
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log
@@ -56,12 +56,9 @@ def diagnose_log(
         unknown_after: an input is unknown once it is older than this [s].
         sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
     """
-    found = list(log.found)
-    for name in ("command", "wheel"):
-        inputs = [run.commands if name == "command" else run.wheels for run in log.runs]
-        if any(inputs):
-            found += findings_of(log, name, unknown_after, sensor_yaw=sensor_yaw)
-    return each_once(found)
+    there = {"command": any(run.commands for run in log.runs), "wheel": any(run.wheels for run in log.runs)}
+    names = [name for name, known in there.items() if known]
+    return each_once((*log.found, *findings_of_each(log, names, unknown_after, sensor_yaw)))
 
 
 def each_once(found: Iterable[Finding]) -> tuple[Finding, ...]:

@@ -60,6 +60,7 @@ class Check:
     cure: ClassVar[str]  # for documents: what to change
     spoils: ClassVar[bool] = True
     reserves: ClassVar[bool] = False  # where it does not spoil
+    of_input: ClassVar[bool] = False  # `look_at` asks which input is learned from
     explained_by: ClassVar[
         tuple[str, ...]
     ] = ()  # kinds that it would follow from: not looked for beside them

@@ -28,6 +28,7 @@ class LateAnswers(Check):
     """Wheels that do what was commanded long ago."""
 
     kind, family, spoils = "late-answers", "drive", False
+    of_input = True
     means = "the wheels answer commands later than a planner allows for: a queue, a slow bus, a slow drive"
     shows = "wheels and commands agree best with wheels 1.3 s earlier and more; real drives take up to 1.1 s"
     cure = (

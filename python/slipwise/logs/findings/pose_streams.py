@@ -32,6 +32,7 @@ class FrozenPoses(Check):
     """Poses that repeat, or do not come, while the inputs drive."""
 
     kind, family, spoils = "frozen-poses", "poses", False
+    of_input = True
     hidden_by = ("two-sources", "repeated-wheels")
     means = "the localiser froze: it repeats a pose to the last digit, or sends none, while the robot drives"
     shows = "3 s and more of it while the inputs drive 0.5 m"

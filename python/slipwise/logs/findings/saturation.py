@@ -40,6 +40,7 @@ class Saturated(Check):
     """Speeds that are asked for and never reached."""
 
     kind, family, spoils = "saturated", "drive", False
+    of_input = True
     means = (
         "the drive is capped below what is commanded, in normal use: a limit of its driver or of its motors"
     )
