@@ -29,6 +29,7 @@ SLIPWISE_TUNING(kMoves, 0.02);                   // of the reference speeds; slo
 constexpr double kSure = 0.9;                    // of the weight; so much counts as another terrain at once
 constexpr double kAlmostAll = 1.0 - 1e-12;       // of the weight, whose odds are finite
 SLIPWISE_TUNING(kTempered, 0.5);                 // power of the number of segments that count as one
+SLIPWISE_TUNING(kAlike, std::size_t{16});        // segments ago, when slip had not changed yet that does so now
 
 /// The slip of one channel, by the size of its terms' jumps where the channel's most is 1.
 JumpingChannel jumping(const Basis& basis, Channel channel, std::string_view main) {
@@ -161,6 +162,7 @@ void BranchBank::restart(const Estimate& known) {
   branches_.add({.estimate = known, .number = ++births_, .born = segments_}, 1.0);
   led_by_ = known_ = births_;
   held_ = 0;
+  alike_.clear();
   change_ = {};
   leader_changed_ = false;
 }
@@ -233,10 +235,15 @@ void BranchBank::prune() {
   branches_.weigh(Eigen::VectorXd::Zero(branches_.weights().size()));
 }
 
+/// Branches that were born within a few segments of one jump share the weight, and none may ever hold half of it.
 void BranchBank::follow_leader() {
   const std::size_t heaviest = branches_.heaviest();
   const Eigen::VectorXd& weights = branches_.weights();
-  const bool leads = weights[static_cast<Eigen::Index>(heaviest)] > 0.5;
+  double younger = 0.0;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    younger += branches_[i].number > led_by_ ? weights[static_cast<Eigen::Index>(i)] : 0.0;
+  }
+  const bool leads = weights[static_cast<Eigen::Index>(heaviest)] > 0.5 || younger > 0.5;
   leader_changed_ = leads && branches_[heaviest].number != led_by_;
   led_by_ = leads ? branches_[heaviest].number : led_by_;
 }
@@ -267,6 +274,18 @@ SlipChange BranchBank::look_for_change() {
     held_ = 0;
   }
   return change;
+}
+
+/// While slip changes, neighbours err alike before a branch has it. Whether they go on to is not known yet: what shows
+/// now and what showed before counts half each.
+double BranchBank::alike_of_late(double alike) {
+  alike_.push_back(alike);
+  if (alike_.size() <= kAlike) {
+    return alike;
+  }
+  const double earlier = alike_.front();
+  alike_.erase(alike_.begin());
+  return std::min(alike, std::sqrt(alike * earlier));
 }
 
 /// By the linearisation at `mean`, where the residual is `innovation`. Neighbours that err alike count for less.
@@ -314,11 +333,12 @@ IekfUpdate BranchBank::learn(const MotionModel& model, const BranchSegment& driv
   const Rows innovation = error_of(segment, at);
   const RowsCovariance covariance = innovation_covariance(state.estimate.covariance, at.by_parameter, noise);
   const double motion = seconds_of_motion(at.path, driven.speeds);
+  const double alike = alike_of_late(driven.alike);
   if (motion > kMoves * (segment.end - segment.start)) {  // slip that lasts is no jump
-    bear(driven.prior, driven.unit, -std::expm1(-motion / kMotion * part_of_alike(driven.alike)));
+    bear(driven.prior, driven.unit, -std::expm1(-motion / kMotion * part_of_alike(alike)));
   }
   ++segments_;
-  weigh(at, mean, innovation, noise, driven.alike);
+  weigh(at, mean, innovation, noise, alike);
   prune();
   const Eigen::VectorXd found = mixture().mean;
   if (found != mean) {

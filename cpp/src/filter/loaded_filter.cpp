@@ -72,6 +72,8 @@ void BranchBank::check_loaded(const BranchBank& made, Eigen::Index parameters) c
                                            branch.estimate.covariance.cols() == parameters;
                                   }),
           "branches have other parameters than their model");
+  require(std::ranges::all_of(alike_, [](double alike) { return alike >= 0.0; }),
+          "segments that count as one are less than none");
 }
 
 void CausalFilter::check_loaded(const CausalFilter& made) const {

@@ -130,10 +130,20 @@ void ModelAverage::reweigh() {
   const std::vector<IekfUpdate>& updates = present(learning_).updates;
   update_ = updates[filters_.heaviest()];
   look_for_change();
-  filters_.learn(common_log_scores(filters_.weights(), updates), settings_.weighting);
+  filters_.learn(scores_of(filters_.weights(), updates), settings_.weighting);
   if (change_.alarm) {
     filters_.begin_with(filters_.weights(), 0);  // of a new terrain, few data have spoken
   }
+}
+
+/// Log scores of one update of each basis. The slip that a basis without terms misses must not pass for noise.
+Eigen::VectorXd ModelAverage::scores_of(const Eigen::VectorXd& weights, std::span<const IekfUpdate> updates) const {
+  Eigen::VectorXd slipping = weights;
+  for (std::size_t i = 0; i < updates.size(); ++i) {
+    slipping[static_cast<Eigen::Index>(i)] *= filters_[i].model().slip_size() == 0 ? 0.0 : 1.0;
+  }
+  const double sum = slipping.sum();
+  return common_log_scores(sum > 0.0 ? Eigen::VectorXd(slipping / sum) : weights, updates);
 }
 
 void ModelAverage::look_for_change() {

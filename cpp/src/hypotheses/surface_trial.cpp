@@ -140,7 +140,7 @@ void ModelAverage::learn_on(Side& side, const Recent& recent) const {
   for (CausalFilter& filter : side.filters.keys()) {
     updates.push_back(filter.learn(recent.inputs, recent.segment, speeds_.reference()));
   }
-  side.filters.learn(common_log_scores(side.filters.weights(), updates), settings_.weighting);
+  side.filters.learn(scores_of(side.filters.weights(), updates), settings_.weighting);
 }
 
 void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, std::span<const SurfaceMemory> known,
@@ -201,7 +201,7 @@ void ModelAverage::reweigh_trial() {
   for (std::size_t i = 0; i < trial.sides.size(); ++i) {
     SurfaceSide& side = trial.sides[i];
     const auto updates = std::span(now.updates).subspan(i * bases, bases);
-    side.bases.learn(common_log_scores(side.bases.weights(), updates), settings_.weighting);
+    side.bases.learn(scores_of(side.bases.weights(), updates), settings_.weighting);
     scores[static_cast<Eigen::Index>(i)] =
         settings_.surfaces.learning_rate * side.evidence.add(model_, now.inputs, now.segment);
   }

@@ -62,6 +62,21 @@ TEST_CASE("a jump of yaw slip is followed within ten segments, and counts as ano
   }
 }
 
+TEST_CASE("a change says nothing of slip that lasts: the second is followed as soon as the first") {
+  const MotionModel model(named_basis("edd-2"), {});
+  for (std::uint64_t seed = 110; seed < 116; ++seed) {
+    CAPTURE(seed);
+    CausalFilter filter = filter_of(model, true);
+    learn(filter, driven(model, -0.2, seed, 36));
+    for (const double jumped : {-0.4, -0.1, -0.5}) {
+      CAPTURE(jumped);
+      learn(filter, driven(model, jumped, seed + 10, 8));
+      CHECK(std::abs(filter.estimate().mean[kYaw] - jumped) < 0.03);
+      learn(filter, driven(model, jumped, seed + 20, 28));
+    }
+  }
+}
+
 TEST_CASE("where slip stays, it is known as well as if it never jumped") {
   const MotionModel model(named_basis("edd-2"), {});
   double followed = 0.0, fixed = 0.0;

@@ -63,7 +63,8 @@ class BranchBank {
   /// The same over those alone that weigh at least so much.
   Estimate mixture_above(double weight) const;
   const Estimate& leader() const { return branches_[branches_.heaviest()].estimate; }
-  /// Whether with the last segment another branch came to hold more than half of the weight.
+  /// Whether with the last segment another branch came to lead: those born since the one that led hold more than half
+  /// of the weight, or it alone does.
   bool leader_changed() const { return leader_changed_; }
   /// The terrain counts as changed where the odds of a jump are large, or have been even for long.
   const SlipChange& change() const { return change_; }
@@ -89,7 +90,7 @@ class BranchBank {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.kinds_, self.settings_, self.branches_, self.births_, self.segments_, self.led_by_, self.known_);
-    a(self.held_, self.change_, self.leader_changed_);
+    a(self.held_, self.alike_, self.change_, self.leader_changed_);
   }
 
  private:
@@ -101,6 +102,7 @@ class BranchBank {
   void prune();
   IekfUpdate update_all(const MotionModel& model, const BranchSegment& driven, SegmentLinearization at,
                         const RowsCovariance& noise, const IekfSettings& settings);
+  double alike_of_late(double alike);
   void follow_leader();
   SlipChange look_for_change();
 
@@ -108,10 +110,11 @@ class BranchBank {
   BranchSettings settings_;
   HypothesisBank<Branch> branches_;
   std::size_t births_ = 0;
-  std::size_t segments_ = 0;  ///< learned since the start
-  std::size_t led_by_ = 0;    ///< number of the branch that held more than half of the weight last
-  std::size_t known_ = 0;     ///< births until the terrain counted as changed
-  std::size_t held_ = 0;      ///< segments for which branches that were born since have more than half of the weight
+  std::size_t segments_ = 0;   ///< learned since the start
+  std::size_t led_by_ = 0;     ///< number of the branch that leads
+  std::size_t known_ = 0;      ///< births until the terrain counted as changed
+  std::size_t held_ = 0;       ///< segments for which branches that were born since have more than half of the weight
+  std::vector<double> alike_;  ///< how many segments counted as one, with each of late
   SlipChange change_;
   bool leader_changed_ = false;
 };

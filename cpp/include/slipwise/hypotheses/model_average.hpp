@@ -148,6 +148,7 @@ class ModelAverage {
 
   /// \throws std::invalid_argument unless there are as many filters and places as bases and candidates.
   void check_sizes() const;
+  Eigen::VectorXd scores_of(const Eigen::VectorXd& weights, std::span<const IekfUpdate> updates) const;
   void update_next_filter();
   void reweigh();
   void look_for_change();
