@@ -11,6 +11,8 @@
 
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/identify/lag_variance.hpp"
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/nonnegative.hpp"
 #include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
@@ -25,6 +27,9 @@ constexpr Eigen::Index kThrottleRamps = 2 * (std::ssize(kThrottle) - 1);
 constexpr Eigen::Index kSteeringRamps = 2 * (std::ssize(kSteering) - 1);
 SLIPWISE_TUNING(kSpeedNoise, 0.1);  // [m/s] of a mean speed about the curve, before it is learned
 SLIPWISE_TUNING(kTurnNoise, 0.1);   // [rad/s]
+SLIPWISE_TUNING(kAlike, 0.2);       // examples next to each other are alike: each counts as so many
+SLIPWISE_TUNING(kNoiseExamples, 20.0);
+constexpr double kHuber = 2.0;      // standard deviations, beyond which errors count less
 constexpr double kUnsteep = 0.05;   // [m/s] that a ramp may differ from the prior's however flat that is
 constexpr double kOffsetStd = 0.1;  // of the curvature straight ahead, as a fraction of the full one
 constexpr double kCurvatureStd = 0.8;
@@ -119,7 +124,78 @@ bool plausible(const CarCurves& car, const BodyTwist& twist) {
   return std::abs(twist.v) <= speed && std::abs(twist.omega) <= speed * largest(car.curvature);
 }
 
+double huber_square(double error) {
+  const double size = std::abs(error);
+  return size > kHuber ? 2.0 * kHuber * size - kHuber * kHuber : error * error;
+}
+
 }  // namespace
+
+CurveBank::CurveBank(std::size_t candidates, const Eigen::VectorXd& prior, const Eigen::VectorXd& std, double noise,
+                     Eigen::Index free)
+    : information_(candidates, Eigen::MatrixXd::Zero(prior.size(), prior.size())),
+      evidence_(candidates, Eigen::VectorXd::Zero(prior.size())),
+      weights_(candidates, prior),
+      squares_(candidates, 0.0),
+      precision_(std.cwiseAbs2().cwiseInverse()),
+      prior_(prior),
+      free_(free),
+      noise_(noise) {}
+
+double CurveBank::variance(std::size_t k) const {
+  return (kNoiseExamples * noise_ * noise_ + squares_[k]) / (kNoiseExamples + examples_);
+}
+
+void CurveBank::learn(const Eigen::MatrixXd& features, double output) {
+  for (std::size_t k = 0; k < weights_.size(); ++k) {
+    const Eigen::VectorXd row = features.row(static_cast<Eigen::Index>(k)).transpose();
+    const double size = variance(k);
+    const double error = (output - row.dot(weights_[k])) / std::sqrt(size);
+    const double weight = kAlike / std::max(1.0, std::abs(error) / kHuber);
+    squares_[k] += size * huber_square(error);
+    information_[k] += weight * row * row.transpose();
+    evidence_[k] += weight * output * row;
+  }
+  examples_ += 1.0;
+}
+
+void CurveBank::solve() {
+  const Eigen::Index d = prior_.size();
+  for (std::size_t k = 0; k < weights_.size(); ++k) {
+    // A weight that may be negative is the difference of two that may not.
+    Eigen::MatrixXd a(d + free_, d + free_);
+    Eigen::VectorXd b(d + free_);
+    a.topLeftCorner(d, d) = information_[k] / variance(k);
+    a.topLeftCorner(d, d).diagonal() += precision_;
+    b.head(d) = evidence_[k] / variance(k) + precision_.cwiseProduct(prior_);
+    a.bottomLeftCorner(free_, d) = -a.topLeftCorner(free_, d);
+    a.topRightCorner(d, free_) = -a.topLeftCorner(d, free_);
+    a.bottomRightCorner(free_, free_) = a.topLeftCorner(free_, free_);
+    a.bottomRightCorner(free_, free_).diagonal() += 1e-6 * precision_.head(free_);
+    b.tail(free_) = -b.head(free_);
+    const Eigen::VectorXd x = nonnegative_solution(a, b);
+    weights_[k] = x.head(d);
+    weights_[k].head(free_) -= x.tail(free_);
+  }
+}
+
+std::size_t CurveBank::best() const {
+  return static_cast<std::size_t>(std::ranges::min_element(squares_) - squares_.begin());
+}
+
+Eigen::VectorXd CurveBank::log_likelihoods() const {
+  Eigen::VectorXd logarithm(std::ssize(squares_));
+  for (std::size_t k = 0; k < squares_.size(); ++k) {
+    logarithm[static_cast<Eigen::Index>(k)] = -0.5 * kAlike * examples_ * std::log(variance(k));
+  }
+  return logarithm;
+}
+
+Eigen::MatrixXd CurveBank::covariance() const {
+  Eigen::MatrixXd information = information_[best()] / variance(best());
+  information.diagonal() += precision_;
+  return Cholesky(information).inverse();
+}
 
 RestFilter::RestFilter() : score_(kRestLags.size(), 0.0) {}
 
@@ -163,8 +239,6 @@ CarCurveFilter::CarCurveFilter(const CarPrior& prior, const CarCurves& known) : 
 }
 
 void CarCurveFilter::start_run(double t) {
-  speed_.start_run();
-  turn_.start_run();
   ramps_ = Eigen::MatrixXd::Zero(kThrottleRamps, std::ssize(kLags));
   drags_ = Eigen::VectorXd::Zero(std::ssize(kLags));
   steering_ = Eigen::VectorXd::Zero(std::ssize(kSteeringLags));
@@ -265,15 +339,15 @@ void CarCurveFilter::set_curves() {
   turn_.solve();
   static const Eigen::MatrixXd by_speed = values_by_weights(kThrottle, false);
   static const Eigen::MatrixXd by_turn = values_by_weights(kSteering, true);
-  const Eigen::VectorXd speed = by_speed * speed_.heaviest().weights(), turn = by_turn * turn_.heaviest().weights();
+  const Eigen::VectorXd speed = by_speed * speed_.weights(), turn = by_turn * turn_.weights();
   const auto spread = std::make_shared<const CarSpread>(car_spread(by_speed, by_turn));
   const Eigen::Index speeds = speed.size() - 1, curvatures = turn.size() - 1;
   const Eigen::MatrixXd& covariance = spread->covariance;
   curves_ = {
       .speed = curve_of(both_sides(kThrottle), speed, covariance.topLeftCorner(speeds, speeds)),
       .curvature = curve_of(both_sides(kSteering), turn, covariance.block(speeds, speeds, curvatures, curvatures)),
-      .lag = kLags[speed_.heaviest().best()],
-      .steering_lag = kSteeringLags[turn_.heaviest().best()],
+      .lag = kLags[speed_.best()],
+      .steering_lag = kSteeringLags[turn_.best()],
       .cornering_drag = speed[speeds],
       .understeer = turn[curvatures],
       .spread = spread};
@@ -297,12 +371,10 @@ CarSpread CarCurveFilter::car_spread(const Eigen::MatrixXd& by_speed, const Eige
     spread.prior_std.segment(first, size) = prior.head(size);
     spread.prior_std[last] = prior[size];
   };
-  put(by_speed, speed_.heaviest(), 0, single + 2);
-  put(by_turn, turn_.heaviest(), speeds, single + 3);
-  spread.covariance(single, single) =
-      lag_variance(kLags, speed_.heaviest().log_likelihoods(), speed_.heaviest().best());
-  spread.covariance(single + 1, single + 1) =
-      lag_variance(kSteeringLags, turn_.heaviest().log_likelihoods(), turn_.heaviest().best());
+  put(by_speed, speed_, 0, single + 2);
+  put(by_turn, turn_, speeds, single + 3);
+  spread.covariance(single, single) = lag_variance(kLags, speed_.log_likelihoods(), speed_.best());
+  spread.covariance(single + 1, single + 1) = lag_variance(kSteeringLags, turn_.log_likelihoods(), turn_.best());
   spread.prior_std[single] = std::sqrt(prior_lag_variance(kLags));
   spread.prior_std[single + 1] = std::sqrt(prior_lag_variance(kSteeringLags));
   return spread;
