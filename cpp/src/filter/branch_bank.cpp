@@ -235,35 +235,39 @@ void BranchBank::prune() {
   branches_.weigh(Eigen::VectorXd::Zero(branches_.weights().size()));
 }
 
+/// Of the branches that were born after so many.
+double BranchBank::weight_after(std::size_t births) const {
+  double weight = 0.0;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    weight += branches_[i].number > births ? branches_.weights()[static_cast<Eigen::Index>(i)] : 0.0;
+  }
+  return weight;
+}
+
 /// Branches that were born within a few segments of one jump share the weight, and none may ever hold half of it.
 void BranchBank::follow_leader() {
   const std::size_t heaviest = branches_.heaviest();
   const Eigen::VectorXd& weights = branches_.weights();
-  double younger = 0.0;
-  for (std::size_t i = 0; i < branches_.size(); ++i) {
-    younger += branches_[i].number > led_by_ ? weights[static_cast<Eigen::Index>(i)] : 0.0;
-  }
-  const bool leads = weights[static_cast<Eigen::Index>(heaviest)] > 0.5 || younger > 0.5;
+  const bool leads = weights[static_cast<Eigen::Index>(heaviest)] > 0.5 || weight_after(led_by_) > 0.5;
   leader_changed_ = leads && branches_[heaviest].number != led_by_;
   led_by_ = leads ? branches_[heaviest].number : led_by_;
 }
 
 /// By the branches that were born since it counted as changed last.
 SlipChange BranchBank::look_for_change() {
-  double young = 0.0;
+  const double young = weight_after(known_);
+  if (young <= 0.5) {
+    held_ = 0;
+    return {};
+  }
   double most = 0.0;
   std::size_t born = segments_;
   for (std::size_t i = 0; i < branches_.size(); ++i) {
     const double weight = branches_.weights()[static_cast<Eigen::Index>(i)];
-    if (branches_[i].number > known_) {
-      young += weight;
-      born = weight > most ? branches_[i].born : born;
-      most = std::max(most, weight);
+    if (branches_[i].number > known_ && weight > most) {
+      born = branches_[i].born;
+      most = weight;
     }
-  }
-  if (young <= 0.5) {
-    held_ = 0;
-    return {};
   }
   ++held_;
   const SlipChange change{.log_odds = std::log(young) - std::log1p(-std::min(young, kAlmostAll)),

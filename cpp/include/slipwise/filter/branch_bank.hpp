@@ -103,6 +103,7 @@ class BranchBank {
   IekfUpdate update_all(const MotionModel& model, const BranchSegment& driven, SegmentLinearization at,
                         const RowsCovariance& noise, const IekfSettings& settings);
   double alike_of_late(double alike);
+  double weight_after(std::size_t births) const;
   void follow_leader();
   SlipChange look_for_change();
 

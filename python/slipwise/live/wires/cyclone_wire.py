@@ -26,7 +26,7 @@ from slipwise.live.wires.wire import OnMessage, WireTopic
 _log = logging.getLogger(__name__)
 _DEPTH = 1000  # messages kept for who is busy, on either side: 10 s at 100 Hz
 _WAIT = 200_000_000  # ns
-_PAUSE = 0.005  # s after messages were taken
+_PAUSE = 0.005  # s after messages were taken: a wake-up for each would cost more than to read it
 _LOOK = 0.25  # s between looks for silent topics
 
 
@@ -206,9 +206,7 @@ class CycloneWire:
             self._waitset.wait(_WAIT)
             for subscription in self._subscriptions:
                 self._deliver(subscription)
-            time.sleep(
-                _PAUSE
-            )  # a wake-up for each message of several streams would cost more than their reading
+            time.sleep(_PAUSE)
             with self._lock:
                 if self._closed.is_set():
                     return

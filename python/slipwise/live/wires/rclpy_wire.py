@@ -237,7 +237,7 @@ class RclpyWire:
             for made in self._subscriptions:
                 publishers = self._node.count_publishers(made.topic)
                 connected = made.entity.get_publisher_count()
-                if publishers == connected == made.publishers and self._silence.heard(made.topic):
+                if publishers == connected == made.publishers and self._silence.has_message(made.topic):
                     continue  # nobody came or went; to ask for each takes ten times as long
                 made.publishers = publishers
                 quality = hearing_all(self._offered(made.topic), latched=made.latched)

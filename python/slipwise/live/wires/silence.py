@@ -54,7 +54,7 @@ class SilenceWatch:
         if wanted is not None:
             wanted.received = True
 
-    def heard(self, topic: str) -> bool:
+    def has_message(self, topic: str) -> bool:
         """Return whether a message came, after which who publishes is of no concern."""
         wanted = self._topics.get(topic)
         return wanted is not None and wanted.received
