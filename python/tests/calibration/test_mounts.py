@@ -11,7 +11,8 @@ import pytest
 from sample_sources import Source, run_of, seen_by, true_run
 
 from slipwise.calibration import Calibration, calibrate
-from slipwise.calibration.mounts import LATE, YAW, X, Y, mounts_of
+from slipwise.calibration.mount_windows import LATE, YAW, X, Y
+from slipwise.calibration.mounts import mounts_of
 from slipwise.calibration.source_tables import PoseSourceTable
 from slipwise.logs import Log, Poses, Run, open_log
 
