@@ -28,6 +28,7 @@ _PRIOR_STD = np.array([2.0, 2.0, 1.0, 0.5])  # m, m, rad, s: where the drive say
 _ROUNDS = 8
 _ROUGH = (12, 50)  # windows and poses in each, by which the search begins
 _OUTLIER = 4.0  # times the usual error of a window, from which on it is left out
+_MOST_ALIKE = 0.8  # correlation of neighbouring windows
 _LEAST_NOISE = (1e-4, 1e-4)  # m, rad
 _KNOWN = (0.1, 0.1, 0.1, 0.1)  # m, m, rad, s: standard deviations up to which a number is said
 
@@ -122,16 +123,30 @@ def _rough(windows: Sequence[Windows], start: Floats, *, heading: bool) -> tuple
 def _fit(windows: Sequence[Windows], start: Floats, *, heading: bool) -> tuple[Floats, Floats]:
     """Return the state and its covariance, which follows from how the windows scatter where that is more."""
     state, noise = start, np.array((0.05, 0.02))
-    covariance, scatter, count = np.eye(4), np.eye(4), 0
+    covariance, gradients = np.eye(4), np.zeros((1, 4))
     for _ in range(_ROUNDS):
         left = left_of_all(windows, state, noise, heading=heading)
-        count, sizes = len(left.counts), np.sqrt(left.sizes)
+        sizes = np.sqrt(left.sizes)
         kept = left.some(sizes <= _OUTLIER * np.median(sizes))
-        state, covariance = _moved(kept, state), _covariance(kept)
-        scatter = kept.gradient.T @ kept.gradient
+        state, covariance, gradients = _moved(kept, state), _covariance(kept), kept.gradient
         noise = _noise(kept, noise)
-    wider = np.trace(covariance @ scatter) / 4.0 * count / max(count - 4, 1)
-    return state, covariance * max(wider, 1.0)
+    return state, _widened(covariance, gradients)
+
+
+def _widened(covariance: Floats, gradients: Floats) -> Floats:
+    """Return the covariance of white noise, each number's wider where the windows say so.
+
+    Noise that lasts errs otherwise in headings than along the path, so each number has a factor of its own:
+    how far windows [W, 4] move it, and how much alike neighbours do, as an autoregression of order one.
+    """
+    moves = gradients @ covariance
+    free = max(len(moves) - 4, 1)
+    squares = (moves**2).sum(axis=0)
+    alike = (moves[1:] * moves[:-1]).sum(axis=0) / np.maximum(squares, np.finfo(float).tiny)
+    alike = np.clip((len(moves) * alike + 1.0) / free, 0.0, _MOST_ALIKE)  # few windows seem less alike
+    factors = squares / np.diag(covariance) * len(moves) / free * (1.0 + alike) / (1.0 - alike)
+    stds = np.sqrt(np.maximum(factors, 1.0))
+    return covariance * np.outer(stds, stds)
 
 
 def _information(left: Left) -> tuple[Floats, Floats]:

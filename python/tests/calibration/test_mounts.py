@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from copy import deepcopy
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,29 +21,71 @@ from slipwise.logs import Log, Poses, Run, open_log
 ARM, TURNED, LATER = (0.45, -0.2), 0.035, 0.12
 
 
-def rig(seed: int) -> tuple[Run, np.ndarray]:
-    """Return a drive that two sources saw, and the pose and lateness of the second."""
-    run, random = true_run(seed)
+Drive = tuple[Run, np.random.Generator]
+
+
+@pytest.fixture(scope="module")
+def drives() -> list[Drive]:
+    return [true_run(seed) for seed in range(100)]
+
+
+def rig(drive: Drive, lasting: float = 0.0) -> tuple[Run, np.ndarray]:
+    """Return a drive that two sources saw, and the pose and lateness of the second.
+
+    Their noise is white, or correlated over a time [s].
+    """
+    run, random = drive[0], deepcopy(drive[1])
     truth = random.uniform((-0.6, -0.4, -0.15, -0.25), (0.6, 0.4, 0.15, 0.25))
-    second = Source(std=(0.02, 0.01), late=truth[LATE], sensor=tuple(truth[:LATE].tolist()))
-    return run_of(run, seen_by(run.poses, Source(), random), other=seen_by(run.poses, second, random)), truth
+    sources = Source(), Source(std=(0.02, 0.01), late=truth[LATE], sensor=tuple(truth[:LATE].tolist()))
+    if lasting == 0.0:
+        first, second = (seen_by(run.poses, source, random) for source in sources)
+    else:
+        first, second = (lastingly_seen_by(run.poses, source, lasting, random) for source in sources)
+    return run_of(run, first, other=second), truth
 
 
-@pytest.mark.slow
-def test_intervals_of_many_rigs_hold_the_truth_and_are_small() -> None:
+def lastingly_seen_by(poses: Poses, source: Source, tau: float, random: np.random.Generator) -> Poses:
+    """Return what a source measures whose noise is an autoregression of order one."""
+    seen = seen_by(poses, replace(source, std=(0.0, 0.0)), random)
+    drawn = random.standard_normal((len(seen), 3)) * (source.std[0], source.std[0], source.std[1])
+    kept = np.exp(-np.diff(seen.t) / tau)
+    noise = drawn.copy()
+    for k, factor in enumerate(kept, 1):
+        noise[k] = factor * noise[k - 1] + np.sqrt(1.0 - factor**2) * drawn[k]
+    return replace(seen, x=seen.x + noise[:, 0], y=seen.y + noise[:, 1], yaw=seen.yaw + noise[:, 2])
+
+
+def of_many(rigs: Iterable[tuple[Run, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the errors and standard deviations of the mounts of rigs, both [N, 4]."""
     errors, stds = [], []
-    for seed in range(100):
-        run, truth = rig(seed)
+    for run, truth in rigs:
         (mount,) = mounts_of([run])
         errors.append(mount.value - truth)
         stds.append(mount.std)
-    held = {k: np.mean(np.abs(np.array(errors)) < k * np.array(stds)) for k in (1.645, 1.96)}
+    return np.array(errors), np.array(stds)
+
+
+@pytest.mark.slow
+def test_intervals_of_many_rigs_hold_the_truth_and_are_small(drives: list[Drive]) -> None:
+    errors, stds = of_many(rig(drive) for drive in drives)
+    held = {k: np.mean(np.abs(errors) < k * stds) for k in (1.645, 1.96)}
     assert 0.86 <= held[1.645] <= 0.96, held
     assert 0.92 <= held[1.96] <= 0.98, held
     rms = np.sqrt(np.mean(np.square(errors), axis=0))
     assert max(rms[X], rms[Y]) < 0.01
     assert np.degrees(rms[YAW]) < 0.1
     assert rms[LATE] < 0.005
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lasting", [2.0, 10.0])
+def test_intervals_hold_the_truth_of_each_number_where_noise_lasts(
+    drives: list[Drive], lasting: float
+) -> None:
+    errors, stds = of_many(rig(drive, lasting) for drive in drives)
+    held = np.mean(np.abs(errors) < 1.96 * stds, axis=0)
+    assert 0.92 <= held.mean() <= 0.98, held
+    assert held.min() > 0.85, held
 
 
 def beside_its_copy(log: Log, random: np.random.Generator, std: tuple[float, float]) -> Log:
@@ -92,7 +136,7 @@ def errors_of(calibration: Calibration) -> np.ndarray:
 
 
 def test_positions_alone_tell_an_arm_and_no_heading() -> None:
-    run, truth = rig(3)
+    run, truth = rig(true_run(3))
     positions = replace(run.others["other"], course=True)
     (mount,) = mounts_of([replace(run, others={"other": positions})])
     assert np.all(np.abs(mount.value - truth)[[X, Y, LATE]] < 0.03)
