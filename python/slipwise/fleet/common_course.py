@@ -52,16 +52,23 @@ def _less(series: Series, others: Sequence[Series], edges: Floats) -> Series:
         for row, other, places in zip(binned, others, bins, strict=True):
             left = other.values - np.interp(other.days, middles, course)
             about = other.values - np.average(left, weights=other.stds**-2.0)
-            for place in np.unique(places):
-                row[place] = about[places == place].mean()
+            drives = np.bincount(places, minlength=len(row))
+            np.divide(np.bincount(places, about, len(row)), drives, out=row, where=drives > 0)
         counts = np.isfinite(binned).sum(axis=0)
         there = counts >= FEWEST_OTHERS
         if there.sum() < 2:
             return series
-        median = np.nanmedian(binned[:, there], axis=0)
+        median = _median(binned[:, there], counts[there])
         spread = np.nanvar(binned[:, there], axis=0, ddof=1)
         noise = float(np.mean(0.5 * np.pi * spread / counts[there]))
         seen = float(np.var(median))
         kept = max(0.0, 1.0 - noise / seen) if seen > 0.0 else 0.0
         course = np.interp(middles, middles[there], median - median.mean())
     return replace(series, values=series.values - kept * np.interp(series.days, middles, course))
+
+
+def _median(columns: Floats, counts: NDArray[np.int64]) -> Floats:
+    """Return medians of columns, each of so many numbers; the rest of a column is NaN."""
+    ordered, column = np.sort(columns, axis=0), np.arange(columns.shape[1])
+    found: Floats = 0.5 * (ordered[(counts - 1) // 2, column] + ordered[counts // 2, column])
+    return found

@@ -88,11 +88,25 @@ def fleet_prior(
     )
 
 
+def _inverse(matrices: Floats) -> Floats:
+    """Return inverses; those of numbers, of which there are many, without LAPACK."""
+    if matrices.shape[-1] == 1:
+        found: Floats = 1.0 / matrices
+        return found
+    return np.asarray(np.linalg.inv(matrices), dtype=np.float64)
+
+
+def _times(matrices: Floats, vectors: Floats) -> Floats:
+    """Return products [N, P] of matrices [N, P, P] and vectors [N, P]."""
+    found: Floats = (matrices @ vectors[..., np.newaxis])[..., 0]
+    return found
+
+
 def _mean(y: Floats, s: Floats, between: Floats, weight: Floats) -> tuple[Floats, Floats]:
     """Return the precision-weighted mean [P] and its covariance."""
-    precision = np.linalg.inv(s + between / weight[:, None, None])
-    covariance = np.linalg.inv(precision.sum(axis=0))
-    return covariance @ np.einsum("nij,nj->i", precision, y), covariance
+    precision = _inverse(s + between / weight[:, None, None])
+    covariance = _inverse(precision.sum(axis=0))
+    return covariance @ _times(precision, y).sum(axis=0), covariance
 
 
 def _step(apart: Floats, s: Floats, between: Floats, dof: float | None) -> tuple[Floats, Floats]:
@@ -100,16 +114,16 @@ def _step(apart: Floats, s: Floats, between: Floats, dof: float | None) -> tuple
     count, size = apart.shape
     weight = np.ones(count)
     if dof is not None:
-        distance = np.einsum("ni,nij,nj->n", apart, np.linalg.inv(s + between), apart)
+        distance = (apart * _times(_inverse(s + between), apart)).sum(axis=1)
         weight = (dof + size) / (dof + distance)
     prior = between / weight[:, None, None]
-    total = np.linalg.inv(s + prior)
+    total = _inverse(s + prior)
     gain = prior @ total
-    expected = np.einsum("nij,nj->ni", gain, apart)
+    expected = _times(gain, apart)
     left = prior - gain @ prior  # covariance of each robot given its estimate and the mean
-    of_mean = np.linalg.inv(total.sum(axis=0))
+    of_mean = _inverse(total.sum(axis=0))
     left = left + gain @ of_mean @ np.swapaxes(gain, 1, 2)  # the mean is estimated: divide by less than N
-    second = np.einsum("ni,nj->nij", expected, expected) + left
+    second = expected[:, :, np.newaxis] * expected[:, np.newaxis] + left
     following = (weight[:, None, None] * second).sum(axis=0) / count
     return following + LEAST * np.eye(size), weight
 
@@ -117,11 +131,13 @@ def _step(apart: Floats, s: Floats, between: Floats, dof: float | None) -> tuple
 def _shrunk(y: Floats, s: Floats, mean: tuple[Floats, Floats], prior: Floats) -> tuple[Floats, Floats]:
     """Return robots given the fleet, and their covariance: that of the fleet's mean and variance included."""
     centre, of_centre = mean
-    gain = prior @ np.linalg.inv(s + prior)
+    gain = prior @ _inverse(s + prior)
     rest = np.eye(y.shape[1]) - gain
-    shrunk = centre + np.einsum("nij,nj->ni", gain, y - centre)
+    shrunk = centre + _times(gain, y - centre)
     covariance = gain @ s + rest @ of_centre @ np.swapaxes(rest, 1, 2)
-    pulled = np.einsum("nij,nj->ni", rest, y - centre)
+    pulled = _times(rest, y - centre)
     freedom = max(1.0, len(y) - y.shape[1] - 2.0)
-    covariance = covariance + 2.0 / freedom * np.einsum("ni,nj->nij", pulled, pulled)  # Morris (1983)
+    covariance = (
+        covariance + 2.0 / freedom * pulled[:, :, np.newaxis] * pulled[:, np.newaxis]
+    )  # Morris (1983)
     return shrunk, 0.5 * (covariance + np.swapaxes(covariance, 1, 2))

@@ -81,13 +81,13 @@ def find_clock_offset(
     usual = np.abs(motion.start - np.median(motion.start)) < _DAY
     motion = PoseMotion(*(column[usual] for column in (motion.start, motion.stop, motion.speed, motion.rate)))
     lags = _LAGS if lagging else _LAGS[:1]
-    drives = [[_Driven.of(part, lag, unknown_after) for part in inputs] for lag in lags]
+    drives = [[Driven.of(part, lag, unknown_after) for part in inputs] for lag in lags]
     coarse = _coarse(drives[len(drives) // 2], motion)
     offsets = coarse.offset + np.arange(-_REACH, _REACH + _MIDDLE, _MIDDLE)
-    scores = np.array([_scores_at(drive, motion, offsets) for drive in drives])
+    scores = np.array([agreements_of(drive, motion, offsets) for drive in drives])
     drive, best = (int(place) for place in np.unravel_index(int(np.argmax(scores)), scores.shape))
     offsets = offsets[best] + np.arange(-_MIDDLE, _MIDDLE + 0.5 * _FINE, _FINE)
-    fine = _scores_at(drives[drive], motion, offsets)
+    fine = agreements_of(drives[drive], motion, offsets)
     best = int(np.argmax(fine))
     offset = float(offsets[best]) + _FINE * _vertex(fine, best)
     found = ClockMatch(offset, float(fine[best]), coarse.next_best)
@@ -99,7 +99,7 @@ def find_clock_offset(
 
 
 @dataclass(frozen=True, eq=False)
-class _Driven:
+class Driven:
     """The inputs of one run, summed over time."""
 
     first: float  # [s]
@@ -109,7 +109,8 @@ class _Driven:
     rate: HeldSum
 
     @classmethod
-    def of(cls, inputs: Inputs, lag: float, unknown_after: float) -> _Driven:
+    def of(cls, inputs: Inputs, lag: float, unknown_after: float) -> Driven:
+        """Sum inputs, as a drive with a time constant of `lag` [s] follows them."""
         part, given = _lagged(inputs, lag), HeldSum.of(inputs, inputs.v, unknown_after)
         speed = HeldSum.of(part, np.hypot(part.v, part.vy), unknown_after)
         rate = HeldSum.of(part, part.omega, unknown_after)
@@ -123,11 +124,10 @@ def agreement_at(inputs: Sequence[Inputs], motion: PoseMotion, offset: float, un
 
 def agreements(inputs: Sequence[Inputs], motion: PoseMotion, offsets: Floats, unknown_after: float) -> Floats:
     """Return the agreement at each of some offsets [N] in s, as `agreement_at` does."""
-    drive = [_Driven.of(part, 0.0, unknown_after) for part in inputs]
-    return _scores_at(drive, motion, offsets)
+    return agreements_of([Driven.of(part, 0.0, unknown_after) for part in inputs], motion, offsets)
 
 
-def _coarse(drive: Sequence[_Driven], motion: PoseMotion) -> ClockMatch:
+def _coarse(drive: Sequence[Driven], motion: PoseMotion) -> ClockMatch:
     """Search all offsets by the normalised correlation of what both know (Padfield 2012, masked)."""
     begin, stop = min(part.first for part in drive), max(part.last for part in drive)
     if stop - begin > _LONGEST:
@@ -208,7 +208,8 @@ def _correlate(seen: Sequence[Floats], driven: Sequence[Floats]) -> tuple[Floats
     return np.where(count > 0, total / np.maximum(count, 1.0), -1.0), lags
 
 
-def _scores_at(drive: Sequence[_Driven], motion: PoseMotion, offsets: Floats) -> Floats:
+def agreements_of(drive: Sequence[Driven], motion: PoseMotion, offsets: Floats) -> Floats:
+    """Return what `agreements` does of inputs that were summed before."""
     scores = np.empty(len(offsets))
     for k, offset in enumerate(offsets.tolist()):
         driven = _input_means(drive, motion.start + offset, motion.stop + offset)
@@ -218,7 +219,7 @@ def _scores_at(drive: Sequence[_Driven], motion: PoseMotion, offsets: Floats) ->
     return scores
 
 
-def _input_means(drive: Sequence[_Driven], start: Floats, stop: Floats) -> tuple[Floats, Floats]:
+def _input_means(drive: Sequence[Driven], start: Floats, stop: Floats) -> tuple[Floats, Floats]:
     """Return the mean speed and yaw rate of the drive [N] between stamps [N], NaN where it is unknown."""
     speed, rate = np.full(len(start), np.nan), np.full(len(start), np.nan)
     for part in drive:

@@ -11,7 +11,7 @@ from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.seen import WORDS, WholeLog
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Floats, Inputs, Poses, Run
-from slipwise.logs.pose_clock import agreements, pose_motion
+from slipwise.logs.pose_clock import Driven, agreements, agreements_of, pose_motion
 
 _LONG = 3.0  # s, and as many usual steps,
 _STEPS = 20.0
@@ -74,11 +74,12 @@ class ClockDrift(Check):
         if float(held.known(p.t[:1], p.t[:1] + _BEGIN)[0]) < _KNOWN:
             return None
         heading = np.full(len(p), np.nan) if p.course else p.yaw
+        drive = [Driven.of(inputs, 0.0, whole.unknown_after)]
 
         def fit(rate: float, offsets: Floats) -> float:
             t = p.t[0] + (p.t[begin] - p.t[0]) / rate
             motion = pose_motion(t, p.x[begin], p.y[begin], heading[begin])
-            return float(agreements([inputs], motion, offsets, whole.unknown_after).max())
+            return float(agreements_of(drive, motion, offsets).max())
 
         none = fit(1.0, _OFFSETS)
         if none > _FIT:
