@@ -17,6 +17,7 @@ from slipwise.calibration.mount_windows import LATE, YAW, X, Y
 from slipwise.calibration.mounts import mounts_of
 from slipwise.calibration.source_tables import PoseSourceTable
 from slipwise.logs import Log, Poses, Run, open_log
+from slipwise.models.mounted import mounted_sensors
 
 ARM, TURNED, LATER = (0.45, -0.2), 0.035, 0.12
 
@@ -127,6 +128,9 @@ def test_a_shifted_copy_of_a_real_log_does_no_harm_where_nobody_says_where_it_si
     assert np.all(errors_of(beside) < 1.15 * errors_of(alone)), (errors_of(alone), errors_of(beside))
     assert [mount.name for mount in beside.mounts] == ["copy"]
     assert any(note.startswith("copy sits 0.4") for note in beside.notes)
+    (learned,) = mounted_sensors(beside.model)
+    assert learned == beside.mounts[0].mounted()
+    assert mounted_sensors(alone.model) == ()
 
 
 def errors_of(calibration: Calibration) -> np.ndarray:
