@@ -187,9 +187,10 @@ def test_no_real_robot_contradicts_its_inputs(real_log_dir: Path) -> None:
         log = open_log(path, options=LogOptions(wheelbase=0.32 if path.parent.name == "f1tenth" else None))
         last = max(run.span[1] for run in log.runs) - min(run.span[0] for run in log.runs)
         for end in (*np.arange(40.0, last, 20.0), last + 1.0):
-            part = cut_to_span(log, None, float(end))
+            part, seen = cut_to_span(log, None, float(end)), None
             for name in ("command", "wheel"):
                 ended = looked_at(WholeLog(part, name), (CommandTimeout(),))
-                every = (*findings_in(seen_in(part, name, UNKNOWN_AFTER)), *ended)
+                seen = seen_in(part, name, UNKNOWN_AFTER, before=seen)  # the evidence is of both inputs
+                every = (*findings_in(seen), *ended)
                 found += [(path.name, end, name, each.sentence) for each in every if each.spoils]
     assert found == []
