@@ -18,6 +18,10 @@
 namespace slipwise {
 namespace {
 
+SLIPWISE_TUNING(kSloping, 0.02);  // prior weight of a basis with terms of gravity, where all others have 1 [-]
+SLIPWISE_TUNING(kStays, 60.0);    // times as long as a force that comes and goes, a force that stays has its size [-]
+constexpr double kEarned = 0.5;   // weight that the bases of a term of gravity need before it counts as known [-]
+
 /// One basis as it is, several as their union.
 Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
   if (bases.empty()) {
@@ -26,19 +30,28 @@ Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
   return bases.size() == 1 ? bases.front() : union_basis(std::move(name), bases);
 }
 
-/// Prior weights: `largest_basis` for the basis with the most terms, the rest in equal parts.
+/// Prior weights. Bases with terms of gravity have `kSloping` each: what is measured of an attitude is seldom the slope
+/// of the ground, but noise, how the sensor is mounted and how a map lies. Of the rest, the one with the most terms has
+/// `largest_basis`, the others equal parts.
 Eigen::VectorXd prior_weights(const std::vector<Basis>& bases, double largest_basis) {
   if (!(largest_basis > 0.0) || !(largest_basis < 1.0)) {
     throw std::invalid_argument("the weight of the largest_basis basis must lie between 0 and 1, got " +
                                 std::to_string(largest_basis));
   }
-  const auto most = std::ranges::max_element(bases, {}, &Basis::size);
-  if (bases.size() == 1) {
-    return Eigen::VectorXd::Ones(1);
+  const auto count = std::ssize(bases);
+  const auto sloping = std::ranges::count_if(bases, &Basis::by_gravity);
+  if (sloping == count) {
+    return Eigen::VectorXd::Constant(count, 1.0 / static_cast<double>(count));
   }
-  const auto others = static_cast<double>(bases.size() - 1);
-  Eigen::VectorXd weights = Eigen::VectorXd::Constant(std::ssize(bases), (1.0 - largest_basis) / others);
-  weights[most - bases.begin()] = largest_basis;
+  const double rest = 1.0 - kSloping * static_cast<double>(sloping);
+  const double most = count - sloping > 1 ? largest_basis : 1.0;
+  const auto others = static_cast<double>(std::max(count - sloping - 1, std::ptrdiff_t{1}));
+  Eigen::VectorXd weights(count);
+  std::ranges::transform(bases, weights.begin(), [&](const Basis& basis) {
+    return basis.by_gravity() ? kSloping : rest * (1.0 - most) / others;
+  });
+  const auto level_size = [](const Basis& basis) { return basis.by_gravity() ? -1 : std::ssize(basis.terms()); };
+  weights[std::ranges::max_element(bases, {}, level_size) - bases.begin()] = rest * most;
   return weights;
 }
 
@@ -60,8 +73,19 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ac
     : model_(averaged_basis(std::move(name), bases), learned), settings_(settings) {
   const Eigen::VectorXd prior = prior_weights(bases, settings.largest_basis);
   for (const Basis& basis : bases) {
-    filters_.add(CausalFilter(MotionModel(basis, learned), filter), prior[std::ssize(places_)]);
-    places_.push_back(places_of(filters_.keys().back().model(), model_));
+    places_.push_back(places_of(MotionModel(basis, learned), model_));
+  }
+  std::vector<CausalFilterSettings> laws{filter};
+  if (filter.force.time_constant > 0.0) {
+    laws.push_back(filter);
+    laws.back().force.time_constant *= kStays;
+  }
+  laws_ = laws.size();
+  for (const CausalFilterSettings& law : laws) {
+    for (std::size_t i = 0; i < bases.size(); ++i) {
+      filters_.add(CausalFilter(MotionModel(bases[i], learned), law),
+                   prior[static_cast<Eigen::Index>(i)] / static_cast<double>(laws.size()));
+    }
   }
 }
 
@@ -228,7 +252,14 @@ Eigen::VectorXd ModelAverage::variance_ratio() const {
     prior(places) = filters_[i].prior_std().cwiseAbs2();
   }
   const Eigen::VectorXd variance = square.cwiseQuotient(having) - mean.cwiseQuotient(having).cwiseAbs2();
-  return variance.cwiseQuotient(prior);
+  Eigen::VectorXd ratio = variance.cwiseQuotient(prior);
+  for (std::size_t i = 0; i < model_.basis().size(); ++i) {
+    const auto place = static_cast<Eigen::Index>(i);
+    if (model_.basis().terms()[i].by_gravity() && having[place] < kEarned) {
+      ratio[place] = std::max(ratio[place], 1.0);  // that a slope does nothing is not known where none was seen
+    }
+  }
+  return ratio;
 }
 
 }  // namespace slipwise

@@ -121,6 +121,22 @@ TEST_CASE("before any data nothing is determined, and the largest_basis basis ha
   CHECK(state.estimate.mean.isZero());
 }
 
+TEST_CASE("a basis with terms of gravity has little weight before it has earned it, and its terms are not known") {
+  const MotionModel real(named_basis("edd-2"), {});
+  const std::vector<Basis> bases{plain(), named_basis("edd-2"), named_basis("drive-5"), named_basis("odd-even-13")};
+  const ModelAverage before("auto", bases, {}, {}, {});
+  CHECK(before.state().weights.isApprox(Eigen::Vector4d(0.294, 0.294, 0.392, 0.02)));
+  const ModelAverage average = learned(bases, real, Eigen::Vector2d(-0.1, -0.4));
+  const AverageState state = average.state();
+  CHECK(state.weights[3] < 0.5);
+  for (std::size_t i = 0; i < average.model().basis().size(); ++i) {
+    if (average.model().basis().terms()[i].by_gravity()) {
+      CHECK(state.variance_ratio[static_cast<Eigen::Index>(i)] >= 1.0);
+    }
+  }
+  CHECK(ModelAverage("auto", {bases[3]}, {}, {}, {}).state().weights[0] == 1.0);
+}
+
 TEST_CASE("reference speeds are the ninetieth percentile of those driven") {
   ModelAverage average("auto", {named_basis("edd-2")}, {}, {}, {});
   const std::vector<double> t{0.0, 8.0}, v{1.0, 4.0}, zero{0.0, 0.0}, omega{0.2, 0.2};

@@ -55,14 +55,22 @@ def test_labels_without_a_memory_are_refused(drive: Path, capsys: pytest.Capture
     assert "add --memory" in capsys.readouterr().err
 
 
+def wait_until_under_way(process: subprocess.Popen[str]) -> None:
+    """Until the process has said where it stands, and learned for four seconds more."""
+    assert process.stdout is not None
+    assert process.stdout.readline()
+    time.sleep(4.0)
+
+
 @pytest.mark.slow
 def test_a_process_that_is_killed_loses_what_came_after_the_last_save(drive: Path, tmp_path: Path) -> None:
     cache = ["--cache", str(tmp_path)]
     common = [*SLIPWISE, "live", "--replay", str(drive), *cache, "--input", "wheel", "--memory"]
     subprocess.run([*common, "--rate", "0"], capture_output=True, check=True)
     saved = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    with subprocess.Popen([*common, "--rate", "5"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as live:
-        time.sleep(10.0)  # under way, and before the first save after 60 s
+    command = [*common, "--rate", "5"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as live:
+        wait_until_under_way(live)  # and before the first save after 60 s
         assert live.poll() is None
         live.kill()
         live.communicate(timeout=30.0)
@@ -78,7 +86,7 @@ def test_a_signal_ends_it_with_the_cache_written(drive: Path, tmp_path: Path, nu
     cache = tmp_path / "cache"
     command = [*SLIPWISE, "live", "--replay", str(drive), "--rate", "5", "--cache", str(cache)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(8.0)
+        wait_until_under_way(process)
         process.send_signal(number)
         began = time.monotonic()
         _, error = process.communicate(timeout=30.0)

@@ -35,8 +35,9 @@ struct AverageState {
   Eigen::VectorXd weights;  ///< one per model, they sum to 1
 };
 
-/// Runs one causal filter per basis. Slip is linear in its parameters, so that the weighted mean of the models is
-/// again a model of the same kind: the mean parameters over the union of the terms, with the spread in the covariance.
+/// Runs one causal filter per basis; with a force on the robot two, of a force that comes and goes and of one that
+/// stays. Slip is linear in its parameters, so that the weighted mean of the models is again a model of the same kind:
+/// the mean parameters over the union of the terms, with the spread in the covariance.
 class ModelAverage {
  public:
   ModelAverage();
@@ -119,7 +120,7 @@ class ModelAverage {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.filters_, self.places_, self.settings_, self.speeds_, self.change_, self.learning_);
+    a(self.model_, self.filters_, self.laws_, self.places_, self.settings_, self.speeds_, self.change_, self.learning_);
     a(self.update_, self.recent_, self.probes_, self.trial_, self.parting_, self.changed_since_);
     self.check_sizes();
   }
@@ -156,7 +157,7 @@ class ModelAverage {
   Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
   AverageState state_of(std::span<const CausalFilter> filters, const Eigen::VectorXd& weights) const;
-  std::size_t sides() const { return trial_ ? trial_->candidates.size() : 1; }
+  std::size_t sides() const { return trial_ ? trial_->candidates.size() : laws_; }
   void note_recent();
   std::size_t recent_since(double since) const;
   HypothesisBank<CausalFilter> filters_on(const SurfaceMemory& surface, double drift) const;
@@ -168,7 +169,8 @@ class ModelAverage {
   SurfacePosterior posterior_of(const AverageState& state) const;
 
   MotionModel model_;
-  HypothesisBank<CausalFilter> filters_;           ///< one per basis, in a trial for each of its candidates
+  HypothesisBank<CausalFilter> filters_;  ///< one per basis, for each law of a force, in a trial each candidate
+  std::size_t laws_ = 1;                  ///< of a force on the robot: it comes and goes, or it stays
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
   DrivenSpeeds speeds_;
