@@ -23,6 +23,7 @@ from slipwise.fleet.knowledge_file import knowledge_text
 from slipwise.fleet.vehicle_numbers import VehicleNumbers, vehicle_numbers
 from slipwise.logs import Log, open_log
 from slipwise.logs.remote import lent, remote_version
+from slipwise.models.body_force import without_force
 from slipwise.models.car import curve_gains
 from slipwise.models.model import Model
 
@@ -173,6 +174,7 @@ def _distance(log: Log) -> float:
 
 def _rows(model: Model) -> tuple[Row, ...]:
     """A curve is one number here: fifty values of it would hide what is odd among tests of chance."""
+    model = without_force(model)  # a force is of its day
     table = model.table
     single = [row for row in table.rows if row.at is None and row.std > 0.0]
     return tuple(
