@@ -13,7 +13,6 @@ from slipwise.models import Model, ModelFile
 from slipwise.models.car import car_rows
 from slipwise.models.limits import LimitsSection, limit_rows
 from slipwise.models.parameter_table import ParameterTable, stage_of
-from slipwise.models.sensor_rows import sensor_row
 
 SPEED = (-0.5, 1.5)
 YAW_RATE = (-1.2, 1.0)
@@ -187,17 +186,3 @@ def make_model(made: Made) -> Model:
     if made.car is not None:
         table = table.beside(*car_rows(made.car))
     return Model(file.model_copy(update=table.content() | {"limit_gains": gains}))
-
-
-def with_further_sensors(model: Model) -> Model:
-    """Return the model with what a drive tells of a receiver of which no heading is known, and of a gyro."""
-    rows = [
-        sensor_row("sensor_x", "/rtk", (0.45, 0.01), 2.0),
-        sensor_row("sensor_y", "/rtk", (-0.2, 0.02), 2.0),
-        sensor_row("late", "/rtk", (0.12, 0.003), 0.5),
-        sensor_row("late", "gyro_z", (-0.18, 0.004), 1.0),
-        sensor_row("scale", "gyro_z", (1.02, 0.01), 0.5),
-    ]
-    covariance = np.diag([row.std**2 for row in rows])
-    covariance[0, 1] = covariance[1, 0] = 0.5 * rows[0].std * rows[1].std
-    return model.with_table(model.table.beside(rows, covariance))

@@ -9,13 +9,14 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.calibration.estimator_run import estimator_info
-from slipwise.calibration.further_sensors import further_sensors
+from slipwise.calibration.gyro_clock import gyro_clock
 from slipwise.calibration.judge import Judged, Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement, too_short
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.model_content import ModelFacts, model_content
+from slipwise.calibration.mounts import mounts_of
 from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of, student_of
 from slipwise.calibration.prepared_run import (
@@ -103,10 +104,11 @@ def calibrate_by(
     learned = learn(windows)
     found = found_contradictions(learned, windows.drive, (log, input_name, settings))
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
-    sensors = further_sensors(learned, log, settings)
-    placed = {mount.name for mount in sensors.mounts}
+    mounts = mounts_of(log.runs, settings.sensor_extrinsics.pose) if learned.sources else ()
+    gyro = gyro_clock(log.runs)
+    placed = {mount.name for mount in mounts}
     return Calibration(
-        model_of(sensors.into(content), log, found),
+        model_of(content, log, found),
         judged.verdict,
         learned.history,
         (*log.left_out, *unused_runs(log, input_name), *windows.left_out),
@@ -114,14 +116,15 @@ def calibrate_by(
             *log.notes,
             *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.judged),
             *(source.sentence(placed=source.name in placed) for source in learned.sources),
-            *sensors.sentences(),
+            *(mount.sentence() for mount in mounts),
+            *((gyro.sentence(),) if gyro is not None and gyro.sentence() else ()),
             *unused_measurements(log, settings, smooth=smooth),
             *unused_wheels(log, settings, learned.kept, input_name),
         ),
         smooth_windows(learned.kept, windows, settings) if smooth else None,
         learned.predictions if settings.estimator == AVERAGE else (),
         learned.baseline if settings.estimator == AVERAGE else (),
-        sensors.mounts,
+        mounts,
     )
 
 
@@ -134,8 +137,7 @@ def model_of_log(learned: Learned, log: Log, input_name: str, settings: Settings
     windows = learning_windows(prepare_run(log, input_name), input_name, settings)
     found = found_contradictions(learned, windows.drive, (log, input_name, settings))
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
-    sensors = further_sensors(learned, log, settings)
-    return model_of(sensors.into(content), log, found), judged.judgement
+    return model_of(content, log, found), judged.judgement
 
 
 def found_contradictions(

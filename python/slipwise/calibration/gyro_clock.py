@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 from slipwise.logs.gyro import COLUMN
 from slipwise.logs.log import Run
 from slipwise.logs.readings import number_rows
-from slipwise.models.schema import Parameter
-from slipwise.models.sensor_rows import LATE, SCALE, sensor_row
 from slipwise.number_text import estimate_text
 
 Floats = NDArray[np.float64]
@@ -35,7 +33,6 @@ _ROUGH = 10  # windows by which the search begins
 _OUTLIER = 4.0  # times the usual error of a window, from which on it is left out
 _TURNS = 0.1  # rad, less of a window says nothing
 _CLEAR, _SAME = 3.0, (0.02, 0.02)  # standard deviations; s, and of the scale: what is not worth a word
-_PRIOR_STD = (1.0, 0.5)  # s, and of the scale: what is taken before a drive
 _KNOWN = (0.05, 0.05)  # s, and of the scale: standard deviations up to which they are said
 
 
@@ -45,17 +42,6 @@ class GyroClock:
 
     late: tuple[float, float]  # s by which its stamps are later than those of the poses
     scale: tuple[float, float]  # how far it turns, over what the poses turn
-
-    def rows(self) -> tuple[tuple[Parameter, ...], Floats]:
-        """Return what is known well as rows of a model's table, and their covariance."""
-        known = [
-            sensor_row(kind, COLUMN, estimate, prior)
-            for kind, estimate, prior, most in zip(
-                (LATE, SCALE), (self.late, self.scale), _PRIOR_STD, _KNOWN, strict=True
-            )
-            if estimate[1] <= most
-        ]
-        return tuple(known), np.diag([row.std**2 for row in known])
 
     def sentence(self) -> str:
         """Say what is clearly otherwise than with a gyro that agrees; empty where nothing is."""

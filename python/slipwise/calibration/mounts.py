@@ -15,11 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.calibration.mount_windows import LATE, LATEST, YAW, Left, Windows, X, Y, left_of_all, windows_in
+from slipwise.export.mounts import Mounted
 from slipwise.logs.log import Run
-from slipwise.models.mounted import Mounted
-from slipwise.models.schema import Parameter
-from slipwise.models.sensor_rows import LATE as LATE_ROW
-from slipwise.models.sensor_rows import PLACES, sensor_row
 
 Floats = NDArray[np.float64]
 
@@ -54,19 +51,6 @@ class Mount:
             for value, std, most in zip(self.value, self.std, _KNOWN, strict=True)
         ]
         return Mounted(self.name, known[X], known[Y], known[YAW] if self.heading else None, known[LATE])
-
-    def rows(self) -> tuple[tuple[Parameter, ...], Floats]:
-        """Return what the drive tells of it as rows of a model's table, and their covariance."""
-        found = self.mounted()
-        known = [found.x, found.y, found.yaw, found.late]
-        places = [place for place, each in enumerate(known) if each is not None]
-        kinds = (*PLACES, LATE_ROW)
-        made = tuple(
-            sensor_row(kinds[place], self.name, each, float(_PRIOR_STD[place]))
-            for place, each in enumerate(known)
-            if each is not None
-        )
-        return made, self.covariance[np.ix_(places, places)]
 
     def sentence(self) -> str:
         """Say where the source sits, and what the drive does not tell of it."""

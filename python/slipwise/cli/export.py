@@ -212,14 +212,12 @@ def _make(model: Model, name: str, to: TargetName, options: ExportOptions) -> _M
     """Make all texts before any is written; `all` leaves out what does not fit the model."""
     from slipwise.errors import ModelError
     from slipwise.export import TARGETS, export_model, find_target
-    from slipwise.models.mounted import mounted_sensors
 
     if to is not TargetName.all:
         target = find_target(to.value)
         return _Made([(target, export_model(model, target.name, name=name, options=options, force=True))], [])
     made = _Made([], [])
-    mounts = options.no_side_slip or any(each.placed for each in mounted_sensors(model))
-    for target in (*TARGETS, *((find_target("mounts"),) if mounts else ())):
+    for target in (*TARGETS, *((find_target("mounts"),) if options.no_side_slip else ())):
         try:
             exported = export_model(model, target.name, name=name, options=options, force=True)
         except ModelError as problem:

@@ -33,7 +33,6 @@ def show(model: ModelFile, input_name: ModelInput = None, json: Json = None) -> 
     )
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.models import load_model
-    from slipwise.models.mounted import mounted_sensors, mounted_sentences
     from slipwise.models.summary import summarise
 
     out = Output(json)
@@ -47,8 +46,6 @@ def show(model: ModelFile, input_name: ModelInput = None, json: Json = None) -> 
     show_verdict(out, content.verdict)
     for line in _origin(learned):
         out.line(line)
-    for sentence in mounted_sentences(mounted_sensors(learned)):
-        out.line(sentence)
     show_other_input(out, learned, model)
     show_shares(out, learned)
     show_parameters(out, summary.parameters)

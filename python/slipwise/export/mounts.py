@@ -4,15 +4,48 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 from slipwise.errors import ModelError
 from slipwise.export.origin import one_line
 from slipwise.models.model import Model
-from slipwise.models.mounted import Estimate, Mounted, mounted_sensors
 from slipwise.models.sensor_look import sensor_look
+from slipwise.number_text import estimate_text
+
+Estimate = tuple[float, float]  # value and standard deviation
+
+
+@dataclass(frozen=True)
+class Mounted:
+    """A sensor in base_link; None stands for what is not known."""
+
+    name: str
+    x: Estimate | None  # m ahead
+    y: Estimate | None  # m to the left
+    yaw: Estimate | None  # rad to the left
+    late: Estimate | None = None  # s that its stamps are later than those of the first source
+    first: bool = False  # whether it is the one of [sensor_extrinsics]
+
+    def sentence(self) -> str:
+        """Say where it sits; empty where nothing is known."""
+        said = [
+            f"{estimate_text(abs(place[0]), place[1])} m {plus if place[0] >= 0.0 else minus}"
+            for place, plus, minus in ((self.x, "ahead", "behind"), (self.y, "to the left", "to the right"))
+            if place is not None
+        ]
+        parts = [f"sits {' and '.join(said)}"] if said else []
+        if self.yaw is not None:
+            side = "left" if self.yaw[0] >= 0.0 else "right"
+            degrees = estimate_text(math.degrees(abs(self.yaw[0])), math.degrees(self.yaw[1]))
+            parts.append(f"is turned by {degrees} deg to the {side}")
+        if self.late is not None:
+            order = "later" if self.late[0] >= 0.0 else "earlier"
+            parts.append(f"is stamped {estimate_text(abs(self.late[0]), self.late[1])} s {order}")
+        return f"{self.name} {', '.join(parts)}" if parts else ""
 
 
 def mount_of_look(model: Model, *, frame: str = "pose_sensor") -> Mounted:
@@ -49,15 +82,6 @@ def mounts_text(mounts: Sequence[Mounted], origin: Sequence[str]) -> str:
     lines += ["", "# URDF:", *(line for mount in mounts for line in _urdf(mount))]
     lines += ["", "# slipwise, in a settings file:", *(line for mount in mounts for line in _settings(mount))]
     return "\n".join(lines) + "\n"
-
-
-def mount_notes(model: Model) -> list[str]:
-    """Say to a file of a filter that takes places of sensors from TF where those of a model sit."""
-    return [
-        f"The filter has places of sensors from TF. {one_line(mount.sentence())}:\n{_transform(mount)}"
-        for mount in mounted_sensors(model)
-        if mount.placed
-    ]
 
 
 def _value(estimate: Estimate | None) -> float:

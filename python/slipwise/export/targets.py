@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from slipwise.errors import ModelError, SettingsError
 from slipwise.export.amcl import amcl
@@ -12,7 +12,7 @@ from slipwise.export.autoware import autoware
 from slipwise.export.c_header import c_header
 from slipwise.export.diff_drive import diff_drive
 from slipwise.export.firmware import FirmwareFile, ardupilot, px4
-from slipwise.export.mounts import mount_notes, mount_of_look, mounts_text
+from slipwise.export.mounts import mount_of_look, mounts_text
 from slipwise.export.mppi import mppi
 from slipwise.export.options import ExportOptions
 from slipwise.export.origin import origin_lines
@@ -22,7 +22,6 @@ from slipwise.models.axes import refuse_sideways
 from slipwise.models.body_force import without_force
 from slipwise.models.inputs import InputName
 from slipwise.models.model import Model
-from slipwise.models.mounted import Mounted, mounted_sensors
 
 
 @dataclass(frozen=True)
@@ -46,15 +45,9 @@ class Target:
     input: InputName | None = None  # that its numbers are of; None: of either
 
 
-def _parameters(
-    make: Callable[[Model, ExportOptions], ParameterFile], *, places: bool = False
-) -> Callable[..., Exported]:
-    """Return what writes a file of a ROS node; `places`: it also says where sensors sit."""
-
+def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callable[..., Exported]:
     def write(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
         file = make(model.body, options)
-        if places:
-            file = replace(file, notes=[*file.notes, *mount_notes(model)])
         return Exported(file.text(origin), file.values(), file.kept(), file)
 
     return write
@@ -69,46 +62,31 @@ def _firmware(make: Callable[[Model, ExportOptions, list[str]], FirmwareFile]) -
 
 
 def _c_header(model: Model, _: ExportOptions, origin: list[str]) -> Exported:
-    return Exported(
-        c_header(model, origin), {p.name: p.value for p in model.content.parameters if not p.sensor}
-    )
+    return Exported(c_header(model, origin), {p.name: p.value for p in model.content.parameters})
 
 
 def _mounts(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
-    """Write the sensors whose places were learned; the first one's only where the robot cannot slip so."""
-    found = [mount for mount in mounted_sensors(model) if mount.placed]
-    if options.no_side_slip or not found:
-        found.insert(0, _first_mount(model, options))
-    values: dict[str, Value] = {}
-    for mount in found:
-        for name in ("x", "y", "yaw"):
-            place = getattr(mount, name)
-            if place is not None:
-                values[name if mount.first else f"{mount.name} {name}"] = place[0]
-    return Exported(mounts_text(found, origin), values)
-
-
-def _first_mount(model: Model, options: ExportOptions) -> Mounted:
     found = mount_of_look(model)
     if not options.no_side_slip:
         raise ModelError(
             f"one source of poses does not tell side slip from a mount ({found.sentence()})",
             advice="add --no-side-slip where the robot does not slip sideways",
         )
-    return found
+    values = {name: getattr(found, name)[0] for name in ("x", "y", "yaw") if getattr(found, name)}
+    return Exported(mounts_text((found,), origin), values)
 
 
 TARGETS = (
     Target("diff-drive", "diff_drive_controller.yaml", _parameters(diff_drive), input="wheel"),
     Target("mppi", "nav2_mppi.yaml", _parameters(mppi), input="command"),
     Target("amcl", "nav2_amcl.yaml", _parameters(amcl), input="wheel"),
-    Target("robot-localization", "robot_localization.yaml", _parameters(robot_localization, places=True)),
+    Target("robot-localization", "robot_localization.yaml", _parameters(robot_localization)),
     Target("autoware", "autoware.param.yaml", _parameters(autoware), input="wheel"),
     Target("px4", "px4.params", _firmware(px4)),
     Target("ardupilot", "ardupilot.param", _firmware(ardupilot)),
     Target("c-header", "model.h", _c_header, sideways=True),
 )
-#: Of models of several sources, or whose slip looks like a mount, where the user says that it is one.
+#: Of models whose slip looks like a mount, where the user says that it is one.
 MOUNTS = Target("mounts", "sensor_mounts.txt", _mounts, sideways=True)
 
 

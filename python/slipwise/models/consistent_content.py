@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import ModelError
-from slipwise.models.parameter_table import in_vector
-from slipwise.models.sensor_rows import is_sensor_row
+from slipwise.models.parameter_table import VECTOR
 
 if TYPE_CHECKING:
     from slipwise.models.model import Model
@@ -38,11 +37,9 @@ def check_content(model: Model) -> None:
 def _faults(model: Model) -> Iterator[str]:
     rows, known = model.content.parameters, model.motion.parameters
     names = [info.name for info in known]
-    stated = [row.name for row in rows if in_vector(row)]
+    stated = [row.name for row in rows if row.stage in VECTOR]
     if names != stated or stated != [row.name for row in rows[: len(names)]]:
         yield f"the parameters are {', '.join(stated)} where slip and actuator have {', '.join(names)}"
-    if len({row.name for row in rows}) < len(rows):
-        yield "two parameters have one name"
     for info, row in zip(known, rows, strict=False):
         if row.unit != info.unit:
             yield f"the unit of {info.name} is {info.unit}, not {row.unit[:40]!r}"
@@ -70,8 +67,7 @@ def _newer(model: Model) -> list[str]:
     """What the schema has room for and this version does not use yet: it must not be left out in silence."""
     content, rows = model.content, model.content.parameters
     found = [name for name in ("branches", "message") if getattr(content, name)]
-    found += [f"{row.name} of {row.branch}" for row in rows if row.branch]
-    found += [f"{row.name} of {row.sensor}" for row in rows if row.sensor and not is_sensor_row(row)]
+    found += [f"{row.name} of {where}" for row in rows if (where := row.sensor or row.branch)]
     return [*found, *(f"{row.name} of {row.input}s" for row in rows if row.input is not None)]
 
 

@@ -23,7 +23,7 @@ from slipwise.models.consistent_content import check_content
 from slipwise.models.file_text import file_text
 from slipwise.models.inputs import MANY, InputName, input_name_of
 from slipwise.models.limits import LimitsSection, core_limits, limits_of
-from slipwise.models.parameter_table import ParameterTable, PhysicalParameter, in_vector, physical_parameters
+from slipwise.models.parameter_table import VECTOR, ParameterTable, PhysicalParameter, physical_parameters
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile, VerdictSection
 from slipwise.models.upgrade import READ_VERSIONS, upgraded
 from slipwise.models.yaml_file import parse_yaml, read_yaml
@@ -172,7 +172,7 @@ class Model:
     @cached_property
     def body(self) -> Model:
         """The model of base_link, by the clock of the inputs: without the pose sensor's place and clock."""
-        if not any(row.stage in ("sensor", "clock") for row in self.table.rows):
+        if not (self.content.sensor_extrinsics or self.content.clock_offset):
             return self
         return self.with_table(
             self.table.without("sensor", "clock"), sensor_extrinsics=False, clock_offset=False
@@ -187,8 +187,8 @@ class Model:
 
     @cached_property
     def vector(self) -> ParameterTable:
-        """The rows that the core takes as one vector: without limits, curves and further sensors."""
-        return self.table.at([i for i, row in enumerate(self.table.rows) if in_vector(row)])
+        """The rows that the core takes as one vector: without limits and curves."""
+        return self.table.of(*VECTOR)
 
     def with_table(self, table: ParameterTable, **changes: object) -> Model:
         """Return the model with other rows, and other content."""

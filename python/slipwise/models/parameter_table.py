@@ -114,11 +114,6 @@ def stage_of(name: str, force: Sequence[str] = ()) -> Stage:
     return "sensor" if name.startswith("sensor_") else "actuator"
 
 
-def in_vector(row: Parameter) -> bool:
-    """Whether the core takes the row: a sensor that is named is not the one that segments are of."""
-    return row.stage in VECTOR and not row.sensor
-
-
 def physical_name(name: str) -> str:
     """Return the name of a parameter in its physical unit: `delay_v` of `log_delay_v`."""
     return name.removeprefix("log_")
@@ -179,7 +174,6 @@ def _may_be_zero(name: str) -> bool:
             "delay_",
             "slow_fraction",
             "sensor_",
-            "late(",
             "car.lag",
             "car.steering_lag",
         )

@@ -57,9 +57,7 @@ def test_a_gyro_of_a_real_log_that_is_shifted_is_later_by_that(name: str, real_l
     assert shifted.scale[0] == pytest.approx(found.scale[0], abs=found.scale[1])
 
 
-def test_calibrate_says_it_and_its_model_has_it(real_log_dir: Path) -> None:
+def test_calibrate_says_it(real_log_dir: Path) -> None:
     log = open_log(real_log_dir / "warthog/grass_7_29_14h46s15.csv.gz")
-    learned = calibrate(log, input="wheel")
-    assert any(note.startswith("the gyro is stamped 0.34") for note in learned.notes), learned.notes
-    assert learned.model["late(gyro_z)"].value == pytest.approx(-0.345, abs=0.006)
-    assert learned.model["scale(gyro_z)"].unit == "-"
+    notes = calibrate(log, input="wheel").notes
+    assert any(note.startswith("the gyro is stamped 0.34") for note in notes), notes

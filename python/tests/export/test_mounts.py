@@ -8,12 +8,11 @@ import tomllib
 import xml.etree.ElementTree as ET
 
 import pytest
-from sample_models import make_model, named, with_further_sensors
+from sample_models import make_model, named
 
 import slipwise as sw
 from slipwise.errors import ModelError
-from slipwise.export.mounts import mounts_text
-from slipwise.models.mounted import Mounted
+from slipwise.export.mounts import Mounted, mounts_text
 
 RTK = Mounted('/rtk "1"\n', (0.4512, 0.001), (-0.2, 0.001), (0.0348, 0.0003), (0.12, 0.001))
 
@@ -52,24 +51,3 @@ def test_one_source_is_a_mount_only_where_the_user_says_so() -> None:
     straight = make_model(named("full-linear-6", ang__w=-0.4))
     with pytest.raises(ModelError, match="no part of the learned slip"):
         sw.export_model(straight, "mounts", name="m", force=True, options=options)
-
-
-def test_further_sources_are_written_from_the_model_file_alone() -> None:
-    model = with_further_sensors(make_model(named("full-linear-6", lat__w=0.3, ang__w=-0.4)))
-    made = sw.export_model(model, "mounts", name="m")
-    assert made.values == {"/rtk x": 0.45, "/rtk y": -0.2}
-    (table,) = tomllib.loads(made.text.rpartition("settings file:")[2])["pose_sources"]
-    assert table == {"name": "/rtk", "x": 0.45, "y": -0.2, "late": 0.12}
-    assert "gyro" not in made.text
-    both = sw.export_model(model, "mounts", name="m", options=sw.ExportOptions(no_side_slip=True))
-    assert list(both.values) == ["x", "/rtk x", "/rtk y"]
-
-
-def test_a_filter_that_asks_tf_for_places_is_told_the_transform() -> None:
-    plain = make_model(named("full-linear-6", lat__w=0.3, ang__w=-0.4))
-    model = with_further_sensors(plain)
-    ours, theirs = (sw.export_model(each, "robot-localization", name="m") for each in (model, plain))
-    assert ours.values == theirs.values
-    assert "# The filter has places of sensors from TF. /rtk sits 0.450 ± 0.010 m ahead" in ours.text
-    assert "--x 0.45 --y -0.2 --z 0 --yaw 0 --frame-id base_link --child-frame-id rtk\n" in ours.text
-    assert "from TF" not in theirs.text

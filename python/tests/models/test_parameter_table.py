@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from sample_cars import true_car
-from sample_models import LIMITS, Made, make_model, with_further_sensors
+from sample_models import LIMITS, Made, make_model
 
 from slipwise import _core
 from slipwise.errors import ModelError
@@ -37,7 +37,6 @@ def of_every_kind() -> dict[str, Model]:
             Made(basis, clock_offset=0.05, sensor_extrinsics=(0.3, 0.1, 0.2), fraction=0.02)
         ),
         "delays": make_model(Made(basis, delays=(0.2, 0.3))),
-        "further sensors": with_further_sensors(make_model(Made(basis, clock_offset=0.05))),
         "car": make_model(
             Made(_core.named_basis("edd-2"), commands=True, car=learned_car(), speed=(-1.0, 2.6))
         ),

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Noise that lasts: what is wrong now is wrong for a while."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def lasting_noise(t: Floats, time_constant: float, random: np.random.Generator, size: int) -> Floats:
+    """Return first-order Gauss-Markov processes [N, size] of standard deviation 1 at stamps [N] in s."""
+    noise = random.standard_normal((len(t), size))
+    for k, kept in enumerate(np.exp(-np.diff(t) / time_constant), 1):
+        noise[k] = kept * noise[k - 1] + np.sqrt(1.0 - kept**2) * noise[k]
+    return noise
