@@ -108,7 +108,6 @@ void ModelAverage::know_robot(const MotionModel& known_model, const Estimate& kn
 
 void ModelAverage::begin_on(const SurfaceMemory& surface, double seconds, double segment_length) {
   filters_ = filters_on(surface, 0.0);
-  laws_ = 1;
   const ReferenceSpeeds speeds = surface.slips.back().speeds;
   speeds_.begin_with(speeds, seconds);
   for (auto& [inputs, segment] : steady_segments(speeds, segment_length)) {

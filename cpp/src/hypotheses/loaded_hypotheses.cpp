@@ -58,8 +58,8 @@ void ModelAverage::check_memory(const SurfaceMemory& memory) const {
 
 void ModelAverage::check_loaded(const ModelAverage& made) const {
   const Eigen::Index size = made.model_.size();
-  require(0 < laws_ && laws_ <= made.laws_ && archive::same(model_, made.model_) && places_ == made.places_ &&
-              archive::same(settings_, made.settings_) && are_weights(filters_.weights()),
+  require((trial_ || filters_.size() == made.filters_.size()) && archive::same(model_, made.model_) &&
+              places_ == made.places_ && archive::same(settings_, made.settings_) && are_weights(filters_.weights()),
           "an average is of other bases or settings");
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     filters_[i].check_loaded(made.filters_[i % made.filters_.size()]);

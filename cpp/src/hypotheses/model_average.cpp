@@ -30,9 +30,9 @@ Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
   return bases.size() == 1 ? bases.front() : union_basis(std::move(name), bases);
 }
 
-/// Prior weights. Bases with terms of gravity have `kSloping` each: what is measured of an attitude is seldom the slope
-/// of the ground, but noise, how the sensor is mounted and how a map lies. Of the rest, the one with the most terms has
-/// `largest_basis`, the others equal parts.
+/// Prior weights. Bases with terms of gravity have `kSloping` each: a measured attitude is as often noise, the mounting
+/// or a map that lies askew as the slope of the ground. Of the rest, the one with the most terms has `largest_basis`,
+/// the others equal parts.
 Eigen::VectorXd prior_weights(const std::vector<Basis>& bases, double largest_basis) {
   if (!(largest_basis > 0.0) || !(largest_basis < 1.0)) {
     throw std::invalid_argument("the weight of the largest_basis basis must lie between 0 and 1, got " +
@@ -80,7 +80,6 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ac
     laws.push_back(filter);
     laws.back().force.time_constant *= kStays;
   }
-  laws_ = laws.size();
   for (const CausalFilterSettings& law : laws) {
     for (std::size_t i = 0; i < bases.size(); ++i) {
       filters_.add(CausalFilter(MotionModel(bases[i], learned), law),
@@ -98,7 +97,8 @@ ModelAverage::~ModelAverage() = default;
 
 void ModelAverage::check_sizes() const {
   const std::size_t bases = places_.size();
-  bool fit = bases > 0 && filters_.size() == sides() * bases;
+  bool fit =
+      bases > 0 && filters_.size() > 0 && filters_.size() == (trial_ ? trial_->candidates.size() : sides()) * bases;
   for (std::size_t i = 0; fit && i < filters_.size(); ++i) {
     fit = std::ssize(places_[i % bases]) == filters_[i].model().size() &&
           filters_[i].estimate().mean.size() == filters_[i].model().size();

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from sample_noise import lasting_noise
 from sample_positions import ANTENNA, BASIS, HORIZONS, SECONDS, SETTINGS, SLIP, commands
 
 from slipwise.calibration import Settings, calibrate
@@ -24,21 +25,11 @@ from slipwise_sim.known_robot import KnownRobot, known_run
 Floats = NDArray[np.float64]
 
 
-def drifting(t: Floats, std: float, random: np.random.Generator) -> Floats:
-    """An error [N, 2] that is correlated over 10 s."""
-    keep = np.exp(-np.diff(t, prepend=t[0]) / 10.0)
-    error = np.zeros((len(t), 2))
-    error[0] = std * random.standard_normal(2)
-    for k in range(1, len(t)):
-        error[k] = keep[k] * error[k - 1] + std * np.sqrt(1.0 - keep[k] ** 2) * random.standard_normal(2)
-    return error
-
-
 def positions_log(seed: int, *, drift: float = 0.0) -> Log:
     random = np.random.default_rng(seed)
     robot = KnownRobot(lag=(0.2, 0.3), delay=(0.1, 0.15), basis=BASIS, slip=SLIP, sensor=ANTENNA)
     run = known_run(robot, commands(random), (0.0, SECONDS), random=random)
-    apart = drifting(run.poses.t, drift, random)
+    apart = drift * lasting_noise(run.poses.t, 10.0, random, 2)
     poses = replace(run.poses, x=run.poses.x + apart[:, 0], y=run.poses.y + apart[:, 1], course=True)
     return Log(runs=(replace(run, poses=poses),))
 

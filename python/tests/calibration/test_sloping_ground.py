@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from sample_logs import Drive, simulated_log
+from sample_noise import lasting_noise
 from sample_slopes import Hills, hilly_log
 
 from slipwise.calibration import calibrate
@@ -82,15 +83,13 @@ def _measured_askew(seed: int, white: float, drift: float, offset: float, plane:
     """Return a minute on flat ground; the attitude has errors of these standard deviations [rad]."""
     log = hilly_log(seed, Hills(height=0.0, seconds=60.0, attitude_std=white))
     run, random = log.runs[0], np.random.default_rng(1000 + seed)
-    yaw, steps = run.poses.yaw, random.normal(size=(2, len(run.poses.t)))
+    yaw = run.poses.yaw
     assert run.poses.roll is not None
     assert run.poses.pitch is not None
-    wander = np.zeros_like(steps)
-    for i in range(1, steps.shape[1]):  # over ten seconds
-        wander[:, i] = 0.99 * wander[:, i - 1] + np.sqrt(1.0 - 0.99**2) * drift * steps[:, i]
+    drifted = drift * lasting_noise(run.poses.t, 10.0, random, 2)
     (roll, pitch), (rise_x, rise_y) = random.normal(size=(2, 2)) * [[offset], [plane]]
-    roll += wander[0] + rise_y * np.cos(yaw) - rise_x * np.sin(yaw)
-    pitch += wander[1] - rise_x * np.cos(yaw) - rise_y * np.sin(yaw)
+    roll += drifted[:, 0] + rise_y * np.cos(yaw) - rise_x * np.sin(yaw)
+    pitch += drifted[:, 1] - rise_x * np.cos(yaw) - rise_y * np.sin(yaw)
     poses = replace(run.poses, roll=run.poses.roll + roll, pitch=run.poses.pitch + pitch)
     return Log((replace(run, poses=poses),))
 

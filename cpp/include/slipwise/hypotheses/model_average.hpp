@@ -120,7 +120,7 @@ class ModelAverage {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.filters_, self.laws_, self.places_, self.settings_, self.speeds_, self.change_, self.learning_);
+    a(self.model_, self.filters_, self.places_, self.settings_, self.speeds_, self.change_, self.learning_);
     a(self.update_, self.recent_, self.probes_, self.trial_, self.parting_, self.changed_since_);
     self.check_sizes();
   }
@@ -157,7 +157,8 @@ class ModelAverage {
   Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
   AverageState state_of(std::span<const CausalFilter> filters, const Eigen::VectorXd& weights) const;
-  std::size_t sides() const { return trial_ ? trial_->candidates.size() : laws_; }
+  /// Filters of each basis: candidates of a trial, or laws of a force.
+  std::size_t sides() const { return filters_.size() / places_.size(); }
   void note_recent();
   std::size_t recent_since(double since) const;
   HypothesisBank<CausalFilter> filters_on(const SurfaceMemory& surface, double drift) const;
@@ -170,7 +171,6 @@ class ModelAverage {
 
   MotionModel model_;
   HypothesisBank<CausalFilter> filters_;  ///< one per basis, for each law of a force, in a trial each candidate
-  std::size_t laws_ = 1;                  ///< of a force on the robot: it comes and goes, or it stays
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
   DrivenSpeeds speeds_;

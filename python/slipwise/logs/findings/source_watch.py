@@ -44,7 +44,6 @@ class SourceWatch:
         self._far, self._relative = far, relative
         self._courses: list[_Course] = []
         self._assigned: deque[_Assigned] = deque(maxlen=LOOKED_AT)
-        self._turns = 0  # of the courses among these
         self._count = 0
         self._until = -math.inf
 
@@ -73,7 +72,10 @@ class SourceWatch:
 
     def _assign(self, value: tuple[float, ...]) -> None:
         far = [max(least, self._relative * abs(each)) for least, each in zip(self._far, value, strict=True)]
-        apart = [_apart(value, course.value, far) for course in self._courses]
+        apart = [
+            max(abs(a - b) / most for a, b, most in zip(value, course.value, far, strict=True))
+            for course in self._courses
+        ]
         if len(apart) < 2 and (not apart or apart[0] > 1.0):
             self._courses.append(_Course(value, self._count))
             return
@@ -82,31 +84,13 @@ class SourceWatch:
             nearer = int(self._courses[0].number > self._courses[1].number)
         self._courses[nearer] = _Course(value, self._count)
         if len(apart) == 2:
-            self._append(_Assigned(nearer == 0, apart[nearer], apart[1 - nearer]))
-
-    def _append(self, new: _Assigned) -> None:
-        """Keep the newest values, and count how often these change from course to course."""
-        kept = self._assigned
-        if len(kept) == LOOKED_AT:
-            self._turns -= kept[0].first != kept[1].first
-        self._turns += bool(kept) and kept[-1].first != new.first
-        kept.append(new)
+            self._assigned.append(_Assigned(nearer == 0, apart[nearer], apart[1 - nearer]))
 
     def _two(self) -> bool:
         """Whether the courses take turns, and each is followed far more closely than the other is near."""
-        if self._turns < FEWEST:
-            return False
         left = [b.other for a, b in itertools.pairwise(self._assigned) if a.first != b.first]
+        if len(left) < FEWEST:
+            return False
         own = np.array([each.own for each in self._assigned])
         followed = float(np.quantile(own, 0.9)) <= 0.5
         return followed and bool(np.median(left) > max(2.0, APART * float(np.quantile(own, 0.75))))
-
-
-def _apart(value: tuple[float, ...], course: tuple[float, ...], far: list[float]) -> float:
-    """Return how far a value is from a course, in units of `far`, where it is farthest."""
-    most = 0.0
-    for a, b, unit in zip(value, course, far, strict=True):
-        apart = abs(a - b) / unit
-        if apart > most:
-            most = apart
-    return most
