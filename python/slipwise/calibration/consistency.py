@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ class Consistency:
     inside: Shares  # parts of the segments within their 50, 90 and 95 % ellipsoids
     nis: float  # mean normalised innovation squared; 3 where errors are normal and the covariance is true
     farthest: float  # the largest of them
-    factor: float  # of the covariances, with which 95 % ellipsoids hold 95 % of the segments
+    factor: float | None  # of the covariances, so that 95 % ellipsoids hold 95 %; None where they are true
 
     @property
     def too_small(self) -> bool:
@@ -82,7 +82,7 @@ class Consistency:
     def advice(self) -> tuple[str, ...]:
         """Say what to do about ellipsoids that are not true, and where to look for what made the tails."""
         look = "The report's errors over time show where it fails: pose jumps, or terrain that changed?"
-        if self.true:
+        if self.true or self.factor is None:
             return (look,) if self.heavy_tails else ()
         factor = number_text(self.factor, 2)
         scale = f"Multiply predicted covariances by {factor} before you plan with them."
@@ -99,13 +99,14 @@ def consistency_of(learned: Predictions) -> Consistency | None:
     nis = learned.nis[half]
     if len(nis) == 0:
         return None
-    return Consistency(
+    found = Consistency(
         segments=len(nis),
         inside=coverage(learned.inside[half]),
         nis=float(np.mean(nis)),
         farthest=float(np.max(nis)),
-        factor=_mending_factor(nis, learned.dof[half]),
+        factor=None,
     )
+    return found if found.true else replace(found, factor=_mending_factor(nis, learned.dof[half]))
 
 
 def _mending_factor(nis: NDArray[np.float64], dof: NDArray[np.float64]) -> float:

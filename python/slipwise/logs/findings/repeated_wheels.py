@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.logs.findings.finding import Check, Finding
@@ -75,29 +76,31 @@ def _least(evidence: _Evidence) -> _Difference | None:
     """The difference at the offset between the clocks at which it is least."""
     middle, reach, least = 0.0, _APART, None
     for step in _STEPS:
-        offsets = (middle + np.arange(-reach, reach + 0.5 * step, step)).tolist()
-        tried = [(each, offset) for offset in offsets if (each := _at(evidence, offset)) is not None]
-        if not tried:
+        offsets, medians = _at(evidence, middle + np.arange(-reach, reach + 0.5 * step, step))
+        if not len(offsets):
             return None
-        least, middle = min(tried, key=lambda pair: pair[0].place + pair[0].heading)
-        reach = step
+        best = int(np.argmin(medians[:, 0] + medians[:, 2]))
+        least, middle, reach = _Difference(*medians[best].tolist()), float(offsets[best]), step
     return least
 
 
-def _at(evidence: _Evidence, offset: float) -> _Difference | None:
-    rows = evidence.probed_motions(offset)
+def _at(evidence: _Evidence, offsets: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Those of the offsets at which enough moved, [K], and the medians there, [K, 5] as of `_Difference`."""
+    pairs = [evidence.probed_motions(offset) for offset in offsets.tolist()]
+    rows, tried = np.concatenate(pairs), np.repeat(np.arange(len(pairs)), [len(each) for each in pairs])
+    moving = np.hypot(rows[:, 3], rows[:, 4]) > _MOVING
+    rows, tried = rows[moving], tried[moving]
     poses, wheels = rows[:, :3], rows[:, 3:]
-    distance = np.hypot(wheels[:, 0], wheels[:, 1])
-    moving = distance > _MOVING
-    if int(moving.sum()) < _ENOUGH:
-        return None
-    apart = (poses - wheels)[moving]
+    apart = poses - wheels
     differences = (
         np.hypot(apart[:, 0], apart[:, 1]),
         np.abs(apart[:, 0]),
         np.abs(wrapped(apart[:, 2])),
-        distance[moving],
-        np.abs(wheels[moving, 2]),
+        np.hypot(wheels[:, 0], wheels[:, 1]),
+        np.abs(wheels[:, 2]),
     )
-    ordered, half = np.sort(differences, axis=1), (len(apart) - 1) // 2
-    return _Difference(*(0.5 * (ordered[:, half] + ordered[:, len(apart) // 2])).tolist())  # medians
+    ordered = np.stack([values[np.lexsort((values, tried))] for values in differences], axis=1)
+    count = np.bincount(tried, minlength=len(pairs))
+    enough = count >= _ENOUGH
+    first, count = (np.cumsum(count) - count)[enough], count[enough]
+    return offsets[enough], 0.5 * (ordered[first + (count - 1) // 2] + ordered[first + count // 2])
