@@ -1,5 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks what the C++ core includes: own header first, lower layers, standard library, Eigen; no circle."""
+"""Checks what the C++ core includes: own header first, lower layers, standard library, Eigen; no circle.
+
+A name of the standard library comes from a header that is included, by the file itself or by one that
+it includes. Compilers find that out for some names alone: one standard header brings others along, and
+so do a precompiled header and a source that is read before this one.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +12,7 @@ import re
 import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -34,6 +40,29 @@ OWN = "slipwise/"
 SOURCES = (".cpp", ".hpp", ".cu")
 CUDA = "cuda_runtime.h"  # in .cu files only
 
+#: Header -> the names of namespace std that it is included for.
+STANDARD = {
+    "algorithm": "clamp|max|min|sort|stable_sort|nth_element|lower_bound|upper_bound|equal_range|copy|"
+    "copy_n|fill|fill_n|find|find_if|count_if|any_of|all_of|none_of|max_element|min_element|equal|"
+    r"minmax_element|transform|reverse|rotate|partition_point|remove_if|unique|ranges::\w+",
+    "array": "array",
+    "cmath": "abs|sqrt|cbrt|hypot|a?sin|a?cos|a?tan|atan2|sinh|cosh|tanh|exp|expm1|log|log1p|pow|erfc?|"
+    "floor|ceil|trunc|round|l?lround|fmod|remainder|fma|fabs|fmax|fmin|copysign|nextafter|signbit|"
+    "isfinite|isnan",
+    "deque": "deque",
+    "functional": "function",
+    "limits": "numeric_limits",
+    "memory": "unique_ptr|shared_ptr|weak_ptr|make_unique|make_shared",
+    "optional": "optional|nullopt|make_optional",
+    "span": "span",
+    "stdexcept": "invalid_argument|out_of_range|(?:domain|length|logic|overflow|runtime)_error",
+    "string": "string|to_string",
+    "variant": "variant|visit|holds_alternative|get_if|monostate",
+    "vector": "vector",
+}
+STANDARD_NAMES = {header: re.compile(rf"\bstd::(?:{names})\b") for header, names in STANDARD.items()}
+NO_CODE = re.compile(r'//.*|"(?:[^"\\]|\\.)*"')
+
 
 @dataclass(frozen=True)
 class Include:
@@ -44,13 +73,18 @@ class Include:
     target: str
 
 
+def files(root: Path) -> Iterator[Path]:
+    """Yield the headers and sources of the core, and of packages beside it, below `root`."""
+    for folder in (f"{part}/{kind}" for part in PARTS for kind in ("include/slipwise", "src")):
+        yield from sorted(p for p in (root / folder).rglob("*") if p.suffix in SOURCES)
+
+
 def includes(root: Path) -> Iterator[Include]:
     """Yield every include of the headers and sources of the core, and of packages beside it, below `root`."""
-    for folder in (f"{part}/{kind}" for part in PARTS for kind in ("include/slipwise", "src")):
-        for path in sorted(p for p in (root / folder).rglob("*") if p.suffix in SOURCES):
-            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
-                if found := INCLUDE.match(line):
-                    yield Include(path.relative_to(root).as_posix(), number, found[2])
+    for path in files(root):
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+            if found := INCLUDE.match(line):
+                yield Include(path.relative_to(root).as_posix(), number, found[2])
 
 
 def layer_of(path: str) -> str:
@@ -89,12 +123,35 @@ def foreign_fault(target: str) -> str:
 
 
 def order_fault(include: Include, root: Path) -> str:
-    """Say that a source does not begin with its own header, where clang-tidy reads that header by itself."""
+    """Say that a source does not begin with its own header."""
     part, _, source = include.path.rpartition("/src/")
     own = re.sub(r"^(.+)\.(cpp|cu)$", rf"{OWN}\1.hpp", source)
     if not source or own == include.target or not (root / part / "include" / own).exists():
         return ""
     return f"includes {include.target} before its own header, {own}"
+
+
+def name_faults(root: Path, graph: Mapping[str, set[str]]) -> Iterator[str]:
+    """Say which files use names of the standard library, or Eigen, without a header that has them."""
+
+    @cache
+    def included(name: str) -> frozenset[str]:
+        own = graph.get(name, set())
+        return frozenset(own).union(*(included(each) for each in own))
+
+    for path in files(root):
+        name, code = path.relative_to(root).as_posix(), NO_CODE.sub("", path.read_text(encoding="utf-8"))
+        headers = included(name_of(name))
+        for header, names in STANDARD_NAMES.items():
+            if header not in headers and (found := names.search(code)):
+                yield f"{name}: {found[0]} without <{header}>"
+        if "Eigen::" in code and not any(each.startswith("Eigen/") for each in headers):
+            yield f"{name}: Eigen:: without a header of Eigen"
+
+
+def name_of(path: str) -> str:
+    """Return how others include a header; a source is what it is called."""
+    return path.rpartition("cpp/include/")[2]
 
 
 def cycles(graph: Mapping[str, set[str]]) -> list[str]:
@@ -110,15 +167,17 @@ def check(root: Path) -> list[str]:
     """Return all faults of the core below `root`, one message each."""
     faults: list[str] = []
     graph: dict[str, set[str]] = {}
-    before = ""
     for include in includes(root):
-        first, before = include.path != before, include.path
-        found = (layer_fault(include), order_fault(include, root) if first else "")
+        before = graph.setdefault(name_of(include.path), set())
+        found = (
+            layer_fault(include),
+            "" if before else order_fault(include, root),
+            f"includes {include.target} twice" if include.target in before else "",
+        )
         faults.extend(f"{include.path}:{include.line}: {fault}" for fault in found if fault)
-        _, header, name = include.path.rpartition("cpp/include/")
-        if header:
-            graph.setdefault(name, set()).add(include.target)
-    return faults + cycles(graph)
+        before.add(include.target)
+    circles = cycles(graph)
+    return faults + (circles or list(name_faults(root, graph)))
 
 
 def main(root: Path) -> int:

@@ -2,6 +2,7 @@
 // Between a limited drive and its parameters in a row.
 #include "slipwise/identify/limited_actuator_parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 

@@ -108,3 +108,21 @@ def test_headers_that_include_each_other_are_found(tmp_path: Path) -> None:
 
 def test_a_header_that_includes_itself_is_a_cycle() -> None:
     assert cycles({"one.hpp": {"one.hpp"}}) == ["headers include each other: one.hpp <- one.hpp"]
+
+
+def test_a_header_that_is_included_twice_is_found(tmp_path: Path) -> None:
+    write(tmp_path, "cpp/src/lie/one.cpp", "#include <cmath>", "#include <cmath>")
+    assert check(tmp_path) == ["cpp/src/lie/one.cpp:3: includes cmath twice"]
+
+
+def test_names_of_the_standard_library_come_from_headers_that_are_included(tmp_path: Path) -> None:
+    write(tmp_path, "cpp/include/slipwise/lie/row.hpp", "#include <span>", "using Row = std::span<double>;")
+    use = ("std::span<double> row;  // std::deque", 'auto text = "std::vector";', "Eigen::Vector2d v;")
+    write(tmp_path, "cpp/src/lie/one.cpp", '#include "slipwise/lie/row.hpp"', *use)
+    write(tmp_path, "cpp/src/lie/two.cpp", "#include <Eigen/Core>", "std::domain_error(std::max());", *use)
+    assert check(tmp_path) == [
+        "cpp/src/lie/one.cpp: Eigen:: without a header of Eigen",
+        "cpp/src/lie/two.cpp: std::max without <algorithm>",
+        "cpp/src/lie/two.cpp: std::span without <span>",
+        "cpp/src/lie/two.cpp: std::domain_error without <stdexcept>",
+    ]
