@@ -11,8 +11,6 @@
 
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/identify/lag_variance.hpp"
-#include "slipwise/linear/cholesky.hpp"
-#include "slipwise/linear/nonnegative.hpp"
 #include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
@@ -27,9 +25,6 @@ constexpr Eigen::Index kThrottleRamps = 2 * (std::ssize(kThrottle) - 1);
 constexpr Eigen::Index kSteeringRamps = 2 * (std::ssize(kSteering) - 1);
 SLIPWISE_TUNING(kSpeedNoise, 0.1);  // [m/s] of a mean speed about the curve, before it is learned
 SLIPWISE_TUNING(kTurnNoise, 0.1);   // [rad/s]
-SLIPWISE_TUNING(kAlike, 0.2);       // examples next to each other are alike: each counts as so many
-SLIPWISE_TUNING(kNoiseExamples, 20.0);
-constexpr double kHuber = 2.0;      // standard deviations, beyond which errors count less
 constexpr double kUnsteep = 0.05;   // [m/s] that a ramp may differ from the prior's however flat that is
 constexpr double kOffsetStd = 0.1;  // of the curvature straight ahead, as a fraction of the full one
 constexpr double kCurvatureStd = 0.8;
@@ -124,78 +119,59 @@ bool plausible(const CarCurves& car, const BodyTwist& twist) {
   return std::abs(twist.v) <= speed && std::abs(twist.omega) <= speed * largest(car.curvature);
 }
 
-double huber_square(double error) {
-  const double size = std::abs(error);
-  return size > kHuber ? 2.0 * kHuber * size - kHuber * kHuber : error * error;
+const Eigen::MatrixXd& values_by_speed() {
+  static const Eigen::MatrixXd values = values_by_weights(kThrottle, false);
+  return values;
+}
+
+const Eigen::MatrixXd& values_by_turn() {
+  static const Eigen::MatrixXd values = values_by_weights(kSteering, true);
+  return values;
+}
+
+/// What speeds and turns tell is independent of each other, and of the lags.
+CarSpread car_spread(const CurveBank& speed, const CurveBank& turn) {
+  const Eigen::MatrixXd &by_speed = values_by_speed(), &by_turn = values_by_turn();
+  const Eigen::Index speeds = by_speed.rows() - 1, curvatures = by_turn.rows() - 1, single = speeds + curvatures;
+  CarSpread spread{.covariance = Eigen::MatrixXd::Zero(single + 4, single + 4),
+                   .prior_std = Eigen::VectorXd::Zero(single + 4)};
+  const auto put = [&spread](const Eigen::MatrixXd& by_weights, const CurveBank& bank, Eigen::Index first,
+                             Eigen::Index last) {  // of a curve's values from `first` on, and the number at `last`
+    const Eigen::Index size = by_weights.rows() - 1;
+    const Eigen::MatrixXd found = by_weights * bank.covariance() * by_weights.transpose();
+    spread.covariance.block(first, first, size, size) = found.topLeftCorner(size, size);
+    spread.covariance.block(first, last, size, 1) = found.topRightCorner(size, 1);
+    spread.covariance.block(last, first, 1, size) = found.bottomLeftCorner(1, size);
+    spread.covariance(last, last) = found(size, size);
+    const Eigen::VectorXd prior =
+        (by_weights * bank.prior_covariance() * by_weights.transpose()).diagonal().cwiseSqrt();
+    spread.prior_std.segment(first, size) = prior.head(size);
+    spread.prior_std[last] = prior[size];
+  };
+  put(by_speed, speed, 0, single + 2);
+  put(by_turn, turn, speeds, single + 3);
+  spread.covariance(single, single) = lag_variance(kLags, speed.log_likelihoods(), speed.best());
+  spread.covariance(single + 1, single + 1) = lag_variance(kSteeringLags, turn.log_likelihoods(), turn.best());
+  spread.prior_std[single] = std::sqrt(prior_lag_variance(kLags));
+  spread.prior_std[single + 1] = std::sqrt(prior_lag_variance(kSteeringLags));
+  return spread;
+}
+
+CarCurves curves_of(const CurveBank& speed, const CurveBank& turn) {
+  const Eigen::VectorXd fast = values_by_speed() * speed.weights(), sharp = values_by_turn() * turn.weights();
+  const auto spread = std::make_shared<const CarSpread>(car_spread(speed, turn));
+  const Eigen::Index speeds = fast.size() - 1, curvatures = sharp.size() - 1;
+  const Eigen::MatrixXd& covariance = spread->covariance;
+  return {.speed = curve_of(both_sides(kThrottle), fast, covariance.topLeftCorner(speeds, speeds)),
+          .curvature = curve_of(both_sides(kSteering), sharp, covariance.block(speeds, speeds, curvatures, curvatures)),
+          .lag = kLags[speed.best()],
+          .steering_lag = kSteeringLags[turn.best()],
+          .cornering_drag = fast[speeds],
+          .understeer = sharp[curvatures],
+          .spread = spread};
 }
 
 }  // namespace
-
-CurveBank::CurveBank(std::size_t candidates, const Eigen::VectorXd& prior, const Eigen::VectorXd& std, double noise,
-                     Eigen::Index free)
-    : information_(candidates, Eigen::MatrixXd::Zero(prior.size(), prior.size())),
-      evidence_(candidates, Eigen::VectorXd::Zero(prior.size())),
-      weights_(candidates, prior),
-      squares_(candidates, 0.0),
-      precision_(std.cwiseAbs2().cwiseInverse()),
-      prior_(prior),
-      free_(free),
-      noise_(noise) {}
-
-double CurveBank::variance(std::size_t k) const {
-  return (kNoiseExamples * noise_ * noise_ + squares_[k]) / (kNoiseExamples + examples_);
-}
-
-void CurveBank::learn(const Eigen::MatrixXd& features, double output) {
-  for (std::size_t k = 0; k < weights_.size(); ++k) {
-    const Eigen::VectorXd row = features.row(static_cast<Eigen::Index>(k)).transpose();
-    const double size = variance(k);
-    const double error = (output - row.dot(weights_[k])) / std::sqrt(size);
-    const double weight = kAlike / std::max(1.0, std::abs(error) / kHuber);
-    squares_[k] += size * huber_square(error);
-    information_[k] += weight * row * row.transpose();
-    evidence_[k] += weight * output * row;
-  }
-  examples_ += 1.0;
-}
-
-void CurveBank::solve() {
-  const Eigen::Index d = prior_.size();
-  for (std::size_t k = 0; k < weights_.size(); ++k) {
-    // A weight that may be negative is the difference of two that may not.
-    Eigen::MatrixXd a(d + free_, d + free_);
-    Eigen::VectorXd b(d + free_);
-    a.topLeftCorner(d, d) = information_[k] / variance(k);
-    a.topLeftCorner(d, d).diagonal() += precision_;
-    b.head(d) = evidence_[k] / variance(k) + precision_.cwiseProduct(prior_);
-    a.bottomLeftCorner(free_, d) = -a.topLeftCorner(free_, d);
-    a.topRightCorner(d, free_) = -a.topLeftCorner(d, free_);
-    a.bottomRightCorner(free_, free_) = a.topLeftCorner(free_, free_);
-    a.bottomRightCorner(free_, free_).diagonal() += 1e-6 * precision_.head(free_);
-    b.tail(free_) = -b.head(free_);
-    const Eigen::VectorXd x = nonnegative_solution(a, b);
-    weights_[k] = x.head(d);
-    weights_[k].head(free_) -= x.tail(free_);
-  }
-}
-
-std::size_t CurveBank::best() const {
-  return static_cast<std::size_t>(std::ranges::min_element(squares_) - squares_.begin());
-}
-
-Eigen::VectorXd CurveBank::log_likelihoods() const {
-  Eigen::VectorXd logarithm(std::ssize(squares_));
-  for (std::size_t k = 0; k < squares_.size(); ++k) {
-    logarithm[static_cast<Eigen::Index>(k)] = -0.5 * kAlike * examples_ * std::log(variance(k));
-  }
-  return logarithm;
-}
-
-Eigen::MatrixXd CurveBank::covariance() const {
-  Eigen::MatrixXd information = information_[best()] / variance(best());
-  information.diagonal() += precision_;
-  return Cholesky(information).inverse();
-}
 
 RestFilter::RestFilter() : score_(kRestLags.size(), 0.0) {}
 
@@ -239,6 +215,8 @@ CarCurveFilter::CarCurveFilter(const CarPrior& prior, const CarCurves& known) : 
 }
 
 void CarCurveFilter::start_run(double t) {
+  speed_.start_run();
+  turn_.start_run();
   ramps_ = Eigen::MatrixXd::Zero(kThrottleRamps, std::ssize(kLags));
   drags_ = Eigen::VectorXd::Zero(std::ssize(kLags));
   steering_ = Eigen::VectorXd::Zero(std::ssize(kSteeringLags));
@@ -285,7 +263,7 @@ void CarCurveFilter::follow(const InputHistory& commands, double until, const Bo
   if (!(until > until_)) {
     return;
   }
-  if (twist != nullptr && !plausible(curves_, *twist)) {
+  if (twist != nullptr && !plausible(lasting_, *twist)) {
     twist = nullptr;
   }
   if (twist != nullptr) {
@@ -337,47 +315,9 @@ void CarCurveFilter::learn(const Means& means, const BodyTwist& twist) {
 void CarCurveFilter::set_curves() {
   speed_.solve();
   turn_.solve();
-  static const Eigen::MatrixXd by_speed = values_by_weights(kThrottle, false);
-  static const Eigen::MatrixXd by_turn = values_by_weights(kSteering, true);
-  const Eigen::VectorXd speed = by_speed * speed_.weights(), turn = by_turn * turn_.weights();
-  const auto spread = std::make_shared<const CarSpread>(car_spread(by_speed, by_turn));
-  const Eigen::Index speeds = speed.size() - 1, curvatures = turn.size() - 1;
-  const Eigen::MatrixXd& covariance = spread->covariance;
-  curves_ = {
-      .speed = curve_of(both_sides(kThrottle), speed, covariance.topLeftCorner(speeds, speeds)),
-      .curvature = curve_of(both_sides(kSteering), turn, covariance.block(speeds, speeds, curvatures, curvatures)),
-      .lag = kLags[speed_.best()],
-      .steering_lag = kSteeringLags[turn_.best()],
-      .cornering_drag = speed[speeds],
-      .understeer = turn[curvatures],
-      .spread = spread};
-}
-
-/// What speeds and turns tell is independent of each other, and of the lags.
-CarSpread CarCurveFilter::car_spread(const Eigen::MatrixXd& by_speed, const Eigen::MatrixXd& by_turn) const {
-  const Eigen::Index speeds = by_speed.rows() - 1, curvatures = by_turn.rows() - 1, single = speeds + curvatures;
-  CarSpread spread{.covariance = Eigen::MatrixXd::Zero(single + 4, single + 4),
-                   .prior_std = Eigen::VectorXd::Zero(single + 4)};
-  const auto put = [&spread](const Eigen::MatrixXd& by_weights, const CurveBank& bank, Eigen::Index first,
-                             Eigen::Index last) {  // of a curve's values from `first` on, and the number at `last`
-    const Eigen::Index size = by_weights.rows() - 1;
-    const Eigen::MatrixXd found = by_weights * bank.covariance() * by_weights.transpose();
-    spread.covariance.block(first, first, size, size) = found.topLeftCorner(size, size);
-    spread.covariance.block(first, last, size, 1) = found.topRightCorner(size, 1);
-    spread.covariance.block(last, first, 1, size) = found.bottomLeftCorner(1, size);
-    spread.covariance(last, last) = found(size, size);
-    const Eigen::VectorXd prior =
-        (by_weights * bank.prior_covariance() * by_weights.transpose()).diagonal().cwiseSqrt();
-    spread.prior_std.segment(first, size) = prior.head(size);
-    spread.prior_std[last] = prior[size];
-  };
-  put(by_speed, speed_, 0, single + 2);
-  put(by_turn, turn_, speeds, single + 3);
-  spread.covariance(single, single) = lag_variance(kLags, speed_.log_likelihoods(), speed_.best());
-  spread.covariance(single + 1, single + 1) = lag_variance(kSteeringLags, turn_.log_likelihoods(), turn_.best());
-  spread.prior_std[single] = std::sqrt(prior_lag_variance(kLags));
-  spread.prior_std[single + 1] = std::sqrt(prior_lag_variance(kSteeringLags));
-  return spread;
+  curves_ = curves_of(speed_.heaviest(), turn_.heaviest());
+  const CurveBank &speed = speed_.copies()[0], &turn = turn_.copies()[0];
+  lasting_ = &speed == &speed_.heaviest() && &turn == &turn_.heaviest() ? curves_ : curves_of(speed, turn);
 }
 
 CarCurves CarCurveFilter::straight() const {

@@ -103,6 +103,14 @@ void CurveBank::check_loaded(const CurveBank& made) const {
           "the curves of a car have other weights");
 }
 
+void CurveCopies::check_loaded(const CurveCopies& made) const {
+  prior_.check_loaded(made.prior_);
+  require(copies_.size() > 0 && copies_.weights().maxCoeff() > 0.0, "the curves of a car have no copy");
+  for (const CurveBank& copy : copies_.keys()) {
+    copy.check_loaded(made.prior_);
+  }
+}
+
 void RestFilter::check_loaded(const RestFilter& made) const {
   require(same_size(score_, made.score_), "lags of a car are others");
 }

@@ -36,7 +36,8 @@ CarStream::CarStream(const CarPrior& prior, const Pose2& sensor, double unknown_
   if (prior.held) {
     follower_.emplace(prior, *prior.held);
   }
-  known_.push_back({.until = -kNever, .curves = filter_.curves(), .straight = filter_.straight()});
+  known_.push_back(
+      {.until = -kNever, .curves = filter_.curves(), .straight = filter_.straight(), .lasting = filter_.lasting()});
 }
 
 void CarStream::start_run() {
@@ -59,14 +60,15 @@ const CarStream::KnownCurves& CarStream::known_at(double t) const {
 }
 
 CarState CarStream::state_at(double t, double latency) const {
-  return last_ && t > last_->t ? advanced(known_at(last_->t - latency).curves, now_, last_->twist, t - last_->t) : now_;
+  return last_ && t > last_->t ? advanced(known_at(last_->t - latency).lasting, now_, last_->twist, t - last_->t)
+                               : now_;
 }
 
 BodyTwist CarStream::expected(const InputSample& command, double latency) const {
   if (!std::isfinite(command.t) || !std::isfinite(command.twist.v) || !std::isfinite(command.twist.omega)) {
     return command.twist;
   }
-  const CarCurves& car = known_at(command.t - latency).curves;
+  const CarCurves& car = known_at(command.t - latency).lasting;
   const CarState goal{.speed = car.speed(command.twist.v), .steering = command.twist.omega};
   return faster(car_twist(car, state_at(command.t, latency)), car_twist(car, goal));
 }
@@ -104,7 +106,8 @@ void CarStream::push_pose(const MeasuredPose& pose) {
   }
   if (measured) {
     motions_.push_back((follower_ ? *follower_ : filter_).motion());
-    known_.push_back({.until = pose.t, .curves = filter_.curves(), .straight = filter_.straight()});
+    known_.push_back(
+        {.until = pose.t, .curves = filter_.curves(), .straight = filter_.straight(), .lasting = filter_.lasting()});
   }
   since_ = pose;
 }

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ from sample_cars import changed_car, true_car, write_car_log
 
 import slipwise as sw
 from slipwise import _core
+from slipwise.calibration.learned_log import new_learner, pushed
+from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import ModelError
 from slipwise.export import export_model
 from slipwise.logs import Log, LogOptions
@@ -67,6 +70,32 @@ def test_what_takes_speeds_refuses_such_a_model(model: sw.Model) -> None:
 def learned(folder: Path, seed: int, *, car: _core.CarCurves | None = None, fastest: float = 0.8) -> sw.Model:
     path = write_car_log(folder / f"car-{seed}.csv", 120.0, seed, car=car, fastest=fastest)
     return sw.calibrate(sw.open_log(path, options=LogOptions(vehicle="dart"))).model
+
+
+def test_a_second_run_by_another_car_is_learned_as_from_nothing(log: Log, tmp_path: Path) -> None:
+    other = changed_car(speed=0.6, curvature=1.3)
+    path = write_car_log(tmp_path / "other.csv", 60.0, 3, car=other)
+    second = sw.open_log(path, options=LogOptions(vehicle="dart"))
+    alone = sw.calibrate(second).model.car
+    after = sw.calibrate(dataclasses.replace(second, runs=(*log.runs, *second.runs))).model.car
+    assert alone is not None
+    assert after is not None
+    assert after.speed.value == pytest.approx(alone.speed.value, abs=0.02)
+    assert after.curvature.value == pytest.approx(alone.curvature.value, abs=0.02)
+
+
+def test_a_learner_saved_between_runs_goes_on_to_the_byte(tmp_path: Path) -> None:
+    runs = []
+    for seed, car in ((1, true_car()), (2, changed_car(0.6, 1.3)), (3, changed_car(0.6, 1.3))):
+        path = write_car_log(tmp_path / f"{seed}.csv", 30.0, seed, car=car)
+        runs.append(prepare_run(sw.open_log(path, options=LogOptions(vehicle="dart")), "command"))
+    whole = new_learner([each.run for each in runs[0]], "command", sw.Settings(), (1.0,))
+    saved = _core.MotionLearner.load(whole.save())
+    for run in runs:
+        list(pushed(whole, run))
+        list(pushed(saved, run))
+        saved = _core.MotionLearner.load(saved.save())
+    assert saved.save() == whole.save()
 
 
 def test_what_is_shown_of_a_car_is_its_curves_and_lags(model: sw.Model) -> None:

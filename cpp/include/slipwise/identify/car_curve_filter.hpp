@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "slipwise/actuator/car_curves.hpp"
+#include "slipwise/identify/curve_bank.hpp"
 
 namespace slipwise {
 
@@ -20,50 +21,6 @@ struct CarPrior {
   double curvature = 2.0;  ///< at full steering [1/m]
   /// What predictions take in place of the learned curves: a model as it is. Gates see the learned ones.
   std::optional<CarCurves> held = {};
-};
-
-/// Least squares of increments that are not negative, for several lags side by side; the lag that predicts best counts.
-class CurveBank {
- public:
-  CurveBank() = default;
-  /// `prior` and its `std` [d] of the weights; each output is known to about `noise`. Weights before `free` may be
-  /// negative.
-  CurveBank(std::size_t candidates, const Eigen::VectorXd& prior, const Eigen::VectorXd& std, double noise,
-            Eigen::Index free);
-
-  /// Scores each candidate by what it knew before, then learns; row k of `features` is that of candidate k.
-  void learn(const Eigen::MatrixXd& features, double output);
-  /// Solves for the weights that are used from now on.
-  void solve();
-  std::size_t best() const;
-  const Eigen::VectorXd& weights() const { return weights_[best()]; }
-  /// Of the weights, as if none were bounded: rather too large.
-  Eigen::MatrixXd covariance() const;
-  /// The same before anything was learned.
-  Eigen::MatrixXd prior_covariance() const { return precision_.cwiseInverse().asDiagonal(); }
-  /// Of each candidate, by the errors of what was predicted.
-  Eigen::VectorXd log_likelihoods() const;
-
-  /// \throws std::invalid_argument where a loaded one is none that `made` could have become.
-  void check_loaded(const CurveBank& made) const;
-
-  /// Names what is saved.
-  template <class Self, class Archive>
-  static void archive(Self& self, Archive& a) {
-    a(self.information_, self.evidence_, self.weights_, self.squares_, self.precision_, self.prior_, self.free_);
-    a(self.examples_, self.noise_);
-  }
-
- private:
-  double variance(std::size_t k) const;
-
-  std::vector<Eigen::MatrixXd> information_;  ///< of the data alone, in units of 1 / noise variance
-  std::vector<Eigen::VectorXd> evidence_;
-  std::vector<Eigen::VectorXd> weights_;
-  std::vector<double> squares_;  ///< of the errors of what was predicted, large ones counted less
-  Eigen::VectorXd precision_, prior_;
-  Eigen::Index free_ = 0;
-  double examples_ = 0.0, noise_ = 1.0;
 };
 
 /// How long what curves do not explain lasts: lags side by side, of which the one that predicts best counts.
@@ -110,7 +67,7 @@ class CarCurveFilter {
   /// One that follows a car by known curves, and learns how it is set right alone.
   CarCurveFilter(const CarPrior& prior, const CarCurves& known);
 
-  /// Another run begins: the car stands; what was learned stays.
+  /// Another run begins: the car stands. What was learned stays, and competes with curves that begin again.
   void start_run(double t);
   /// Goes on to `until` [s] under the commands (v is the throttle, omega the steering). `twist` is the mean over this
   /// time as poses tell it; nullptr where they do not.
@@ -118,6 +75,8 @@ class CarCurveFilter {
 
   double until() const { return until_; }
   const CarCurves& curves() const { return curves_; }
+  /// Those that go on from all runs: curves that began again know little of throttles that they have not seen.
+  const CarCurves& lasting() const { return lasting_; }
   /// A kinematic bicycle without lag, whose two constant gains are the best so far: what curves are held against.
   CarCurves straight() const;
   /// What it does now, followed by the curves and set right by what was measured.
@@ -129,7 +88,7 @@ class CarCurveFilter {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.curves_, self.speed_, self.turn_, self.ramps_, self.drags_, self.steering_, self.observers_,
+    a(self.curves_, self.lasting_, self.speed_, self.turn_, self.ramps_, self.drags_, self.steering_, self.observers_,
       self.observer_score_);
     a(self.gain_, self.turn_gain_, self.until_, self.held_, self.learned_, self.turn_rest_, self.sideways_);
   }
@@ -139,10 +98,9 @@ class CarCurveFilter {
   void step(const BodyTwist& command, double duration, const BodyTwist& moved, Means& means);
   void learn(const Means& means, const BodyTwist& twist);
   void set_curves();
-  CarSpread car_spread(const Eigen::MatrixXd& by_speed, const Eigen::MatrixXd& by_turn) const;
 
-  CarCurves curves_;
-  CurveBank speed_, turn_;
+  CarCurves curves_, lasting_;
+  CurveCopies speed_, turn_;
   Eigen::MatrixXd ramps_;            ///< [ramps, lags] lagging ramps of the throttle
   Eigen::VectorXd drags_;            ///< [lags] lagging |omega V|
   Eigen::VectorXd steering_;         ///< [steering lags]

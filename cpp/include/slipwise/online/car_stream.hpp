@@ -56,6 +56,7 @@ class CarStream {
   struct KnownCurves {
     double until;  ///< [s] nothing later was used
     CarCurves curves, straight;
+    CarCurves lasting;  ///< for gates, which must not follow curves that began again
   };
   const KnownCurves& known_at(double t) const;
   /// By which inputs are made, where `known` [s] is known.
