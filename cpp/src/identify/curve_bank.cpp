@@ -128,8 +128,8 @@ void CurveCopies::learn(const Eigen::MatrixXd& features, double output) {
     std::vector<Rows> errors;
     std::vector<RowsCovariance> variances;
     for (const CurveBank& copy : copies_.keys()) {
-      errors.push_back(Rows::Constant(1, copy.error(features, output)));
-      variances.push_back(RowsCovariance::Constant(1, 1, copy.variance()));
+      errors.emplace_back(Rows::Constant(1, copy.error(features, output)));
+      variances.emplace_back(RowsCovariance::Constant(1, 1, copy.variance()));
     }
     copies_.learn(common_log_scores(copies_.weights(), errors, variances), {.learning_rate = kAlike});
   }
