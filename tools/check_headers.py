@@ -10,12 +10,11 @@ import subprocess
 import sys
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache
 from graphlib import TopologicalSorter
 from itertools import pairwise
 from pathlib import Path
 
-from tools.check_includes import ROOT, files, includes, name_of
+from tools.check_includes import ROOT, closures, files, includes, name_of
 
 EIGEN = "Eigen/Core"  # what takes longest to read
 BUILD = Path("build/headers")
@@ -25,19 +24,13 @@ COMMANDS = Path("build/tidy/compile_commands.json")
 Closures = Mapping[str, frozenset[str]]
 
 
-def closures(root: Path) -> Closures:
+def headers_of(root: Path) -> Closures:
     """Return what each header below `root` includes, itself or by others."""
     direct: dict[str, set[str]] = {name_of(str(path)): set() for path in files(root) if path.suffix == ".hpp"}
     for include in includes(root):
         if name_of(include.path) in direct:
             direct[name_of(include.path)].add(include.target)
-
-    @cache
-    def closure(name: str) -> frozenset[str]:
-        own = direct.get(name, set())
-        return frozenset(own).union(*(closure(each) for each in own))
-
-    return {name: closure(name) for name in direct}
+    return closures(direct)
 
 
 def chains(within: Closures) -> list[list[str]]:
@@ -97,7 +90,7 @@ def compile_chain(command: list[str], chain: Iterable[str], before: Path | None)
 
 def faults(root: Path) -> list[str]:
     """Return what the compiler says of headers that are not complete by themselves."""
-    within = closures(root)
+    within = headers_of(root)
     command = compiler_and_flags(root / COMMANDS)
     eigen = root / BUILD / "eigen.hpp"
     eigen.parent.mkdir(parents=True, exist_ok=True)

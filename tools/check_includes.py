@@ -131,17 +131,23 @@ def order_fault(include: Include, root: Path) -> str:
     return f"includes {include.target} before its own header, {own}"
 
 
-def name_faults(root: Path, graph: Mapping[str, set[str]]) -> Iterator[str]:
-    """Say which files use names of the standard library, or Eigen, without a header that has them."""
+def closures(direct: Mapping[str, set[str]]) -> dict[str, frozenset[str]]:
+    """Return what each file includes, itself or by others, from what each includes itself: no circle."""
 
     @cache
-    def included(name: str) -> frozenset[str]:
-        own = graph.get(name, set())
-        return frozenset(own).union(*(included(each) for each in own))
+    def closure(name: str) -> frozenset[str]:
+        own = direct.get(name, set())
+        return frozenset(own).union(*(closure(each) for each in own))
 
+    return {name: closure(name) for name in direct}
+
+
+def name_faults(root: Path, graph: Mapping[str, set[str]]) -> Iterator[str]:
+    """Say which files use names of the standard library, or Eigen, without a header that has them."""
+    within = closures(graph)
     for path in files(root):
         name, code = path.relative_to(root).as_posix(), NO_CODE.sub("", path.read_text(encoding="utf-8"))
-        headers = included(name_of(name))
+        headers = within.get(name_of(name), frozenset())
         for header, names in STANDARD_NAMES.items():
             if header not in headers and (found := names.search(code)):
                 yield f"{name}: {found[0]} without <{header}>"

@@ -6,11 +6,11 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from tools.check_headers import ROOT, chains, closures, compile_chain
+from tools.check_headers import ROOT, chains, compile_chain, headers_of
 
 
 def test_each_header_stands_in_one_chain_after_headers_that_it_includes() -> None:
-    within = closures(ROOT)
+    within = headers_of(ROOT)
     found = chains(within)
     assert sorted(name for chain in found for name in chain) == sorted(within)
     assert all(first in within[then] for chain in found for first, then in pairwise(chain))
