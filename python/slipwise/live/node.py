@@ -25,6 +25,8 @@ from slipwise.live.status import DrivenPath, Now, parameters_now, status_of
 MOST_WAITING = 20_000  # samples; a transport waits beyond them
 AT_ONCE = 256  # samples between two looks at the clock
 REST = 0.01  # s between two looks for samples
+LAST = 1.0  # s of the wall clock for what had come when the node was stopped
+WAITED = "samples that still waited when the node was stopped"
 ODOMETRY_EVERY = 0.02  # s of stamps
 STATUS_EVERY = 0.2  # s of the wall clock
 NOTICES_EVERY = 1.0  # s of the wall clock
@@ -55,6 +57,11 @@ class LiveNode:
     def stop(self) -> None:
         """End the loop; may be called from any thread, or a signal."""
         self._stopped.set()
+
+    @property
+    def waiting(self) -> int:
+        """How many samples came and are not taken yet."""
+        return len(self._waiting)
 
     def run(self) -> None:
         """Take samples until the transport has no more, or the node is stopped; then save.
@@ -130,7 +137,7 @@ class LiveNode:
             self._answer(sample)
             return
         if isinstance(sample, Unusable):
-            parts.said.count(sample.reason)
+            parts.said.count(sample.reason, number=sample.number)
             parts.said.once(parts.intake.newest, sample.kind, sample.text)
             return
         if isinstance(sample, SurfaceCue):
@@ -295,7 +302,11 @@ class LiveNode:
             parts.said.ends(t, "cache", "the state can be saved again")
 
     def _finish(self) -> None:
-        parts = self._parts
+        parts, until = self._parts, time.monotonic() + LAST
+        while self._waiting and time.monotonic() < until:
+            self._take_some()
+        if self._waiting:
+            parts.said.count(WAITED, number=len(self._waiting))
         t = parts.intake.newest
         self._survive("the last segment", lambda: parts.learning.take(parts.intake.events()))
         self._survive("the last judgement", lambda: self._judge(t, last=True))

@@ -71,6 +71,7 @@ class Unusable:
     reason: str  # for the count
     text: str  # what to say
     kind: str  # of the sentence
+    number: int = 1  # how many of it
 
 
 Stamped = Measurement | Override

@@ -6,6 +6,8 @@ from __future__ import annotations
 import contextlib
 import math
 import socket
+import struct
+import sys
 import threading
 import time
 
@@ -15,12 +17,15 @@ from slipwise.live.coming import ComingLines, ComingSoon
 from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.pipe import samples_in
-from slipwise.live.samples import Sample
+from slipwise.live.samples import Sample, Unusable
 from slipwise.live.transport import OnSample
 from slipwise.logs.options import LogOptions
 
 DEFAULT_ADDRESS = "127.0.0.1:7447"
 LARGEST = 60_000  # bytes of a packet
+BUFFER = 4 << 20  # bytes that the system is asked to keep of packets that wait
+LOST = "packets that were lost: more came than could be read"
+_COUNTS_LOST = 40  # SO_RXQ_OVFL of Linux (socket(7)): how many were lost comes with each packet
 _AS_IT_IS = LogOptions()
 
 
@@ -32,6 +37,10 @@ def listening_socket(address: str) -> socket.socket:
     """
     host, port = host_and_port(address)
     found = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    with contextlib.suppress(OSError):  # the system keeps fewer, or does not count
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER)
+        if sys.platform == "linux":
+            found.setsockopt(socket.SOL_SOCKET, _COUNTS_LOST, 1)
     try:
         found.bind((host or "127.0.0.1", int(port)))
     except (OSError, ValueError, OverflowError) as problem:
@@ -57,7 +66,7 @@ class Udp:
     def __init__(self, address: str = DEFAULT_ADDRESS, options: LogOptions = _AS_IT_IS) -> None:
         self._reader = LineReader(options)
         self._socket = listening_socket(address)
-        self._packets = 0
+        self._packets, self._lost = 0, 0
         self._looked_at: list[Sample] = []
         self._sender: tuple[str, int] | None = None
         self._stopped = threading.Event()
@@ -67,6 +76,11 @@ class Udp:
     def port(self) -> int:
         """The port that is listened on."""
         return int(self._socket.getsockname()[1])
+
+    @property
+    def packets(self) -> int:
+        """How many packets were read."""
+        return self._packets
 
     def look(self, longest: float = math.inf) -> ComingLines:
         """Wait for the first samples, and return what will come; `subscribe` delivers them all the same.
@@ -139,9 +153,23 @@ class Udp:
             OSError: nothing can be received any more.
         """
         try:
-            packet, self._sender = self._socket.recvfrom(LARGEST + 1)
+            packet, beside, _, self._sender = self._socket.recvmsg(LARGEST + 1, socket.CMSG_SPACE(4))
         except TimeoutError:
             return []
+        place = f"packet {self._packets + 1}"
+        samples = self._lost_before(beside, place)
+        for line in packet.splitlines():
+            samples += samples_in(self._reader, line, place)
         self._packets += 1
-        place = f"packet {self._packets}"
-        return [sample for line in packet.splitlines() for sample in samples_in(self._reader, line, place)]
+        return samples
+
+    def _lost_before(self, beside: list[tuple[int, int, bytes]], place: str) -> list[Sample]:
+        """Return how many packets were lost since the one before, by what the system says beside a packet."""
+        for level, kind, content in beside:
+            if level == socket.SOL_SOCKET and kind == _COUNTS_LOST:
+                lost = (struct.unpack("I", content)[0] - self._lost) % 2**32
+                self._lost += lost
+                if lost:
+                    text = f"{lost} packets were lost before {place}: more came than could be read"
+                    return [Unusable(LOST, text, kind=LOST, number=lost)]
+        return []

@@ -78,16 +78,18 @@ def through_udp(log: Log, input_name: str) -> Built:
     def send() -> None:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             for k, line in enumerate(lines_of(log, input_name)):
+                while transport.packets < k - 20:
+                    time.sleep(0.001)
                 sender.sendto(line.encode(), ("127.0.0.1", transport.port))
-                if k % 20 == 19:
-                    time.sleep(0.01)  # as a robot does: no buffer of the system is that large
-        time.sleep(0.5)
+        while transport.packets <= k or built.node.waiting:
+            time.sleep(0.001)
         built.node.stop()
 
     thread = threading.Thread(target=send)
     thread.start()
     built.node.run()
     thread.join()
+    assert not built.said.counts
     return built
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import io
 import json
 import socket
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from sample_logs import Drive
 from scripted_node import SLIP, Scripted, driven, run_node
 
 from slipwise.calibration import Settings
@@ -20,10 +22,12 @@ from slipwise.calibration.live_table import LiveTable
 from slipwise.errors import LogError
 from slipwise.live.build import Built, build_node
 from slipwise.live.lines import MOST_BYTES
+from slipwise.live.node import WAITED
 from slipwise.live.outputs import Output, Status
 from slipwise.live.pipe import Pipe, bounded_lines
 from slipwise.live.samples import Request, Sample
-from slipwise.live.udp import Udp
+from slipwise.live.transport import OnSample
+from slipwise.live.udp import LOST, Udp
 
 HEADER = b"t,odo_v,odo_omega,x,y,yaw,roll,pitch\n"
 HOSTILE = {
@@ -227,3 +231,61 @@ def test_packets_of_anybody_end_no_node() -> None:
     last = [output for output in kept.outputs if isinstance(output, Status)][-1]
     assert sum(last.counts.values()) >= 8, last.counts
     assert built.learning.learner.odometry() is not None
+
+
+def sent(number: int, port: int) -> None:
+    """Send as many packets of a sample each."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for k in range(number):
+            sender.sendto(HEADER + b"%.3f,0.5,0,,,,,\n" % (k * 0.001), ("127.0.0.1", port))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="no other system says how many packets were lost")
+def test_packets_that_come_faster_than_they_are_read_are_counted_and_said() -> None:
+    transport, number = Udp("127.0.0.1:0"), 30_000
+    sent(number, transport.port)  # nobody reads yet
+    built = build_node(transport, "wheel", Settings(), run="UDP")
+
+    def stop() -> None:
+        before = -1
+        while transport.packets > before or built.node.waiting:
+            before = transport.packets
+            time.sleep(0.2)
+        sent(1, transport.port)  # what was lost is known with the next one
+        while transport.packets == before or built.node.waiting:
+            time.sleep(0.01)
+        built.node.stop()
+
+    thread = threading.Thread(target=stop)
+    thread.start()
+    built.node.run()
+    thread.join()
+    lost = built.said.counts[LOST]
+    assert lost > 0
+    assert lost + transport.packets == number + 1
+    assert any(f"{lost} packets were lost before" in text for _, text in built.said.log())
+
+
+class AtOnce(Scripted):
+    """Delivers all samples before the node takes one."""
+
+    def __init__(self, samples: list[Sample]) -> None:
+        super().__init__([])
+        self.samples = samples
+
+    def subscribe(self, on_sample: OnSample) -> None:
+        for sample in self.samples:
+            on_sample(sample)
+
+
+@pytest.mark.parametrize("seconds", [3.0, 300.0])
+def test_what_came_before_a_stop_is_taken_or_counted(seconds: float) -> None:
+    transport = AtOnce(driven(Drive(seconds=seconds)))
+    built = build_node(transport, "wheel", Settings(), run="a stop")
+    built.node.stop()
+    built.node.run()
+    assert built.said.counts[WAITED] == built.node.waiting
+    assert transport.statuses[-1].counts == built.said.counts
+    if seconds == 3.0:
+        assert built.node.waiting == 0
+        assert built.learning.learner.odometry() is not None
