@@ -13,7 +13,7 @@ from slipwise.errors import SettingsError
 from slipwise.live.one_rotation import deviation, rotation_of
 from slipwise.live.samples import Command, Pose, Reading, Wheels
 from slipwise.logs.corrections import late_by
-from slipwise.logs.findings.topics import ZeroTwist
+from slipwise.logs.findings.topics import ZeroCovariance, ZeroTwist
 from slipwise.logs.fixes import fix_of_status
 from slipwise.logs.gyro import COLUMN as GYRO
 from slipwise.logs.joints import SideMotion
@@ -174,17 +174,41 @@ class _SideSpeeds:
         return (angles[0] - last[1]) / (t - last[0]), (angles[1] - last[2]) / (t - last[0])
 
 
-def to_pose(kind: str, options: LogOptions, *, headed: bool = True) -> ToPose:
+class _Covariances:
+    """Says that the first poses of a topic have no other covariance than zeros."""
+
+    def __init__(self, say: Callable[[int], None]) -> None:
+        self._say = say
+        self._looked_at = 0
+
+    def take(self, *variances: float) -> None:
+        if self._looked_at < ZeroCovariance.FEWEST:
+            self._looked_at = ZeroCovariance.FEWEST + 1 if any(variances) else self._looked_at + 1
+            if self._looked_at == ZeroCovariance.FEWEST:
+                self._say(self._looked_at)
+
+
+def to_pose(
+    kind: str,
+    options: LogOptions,
+    say: Callable[[str], None] = _nobody,
+    topic: str = "",
+    *,
+    headed: bool = True,
+) -> ToPose:
     """Return what makes a pose of a message of type `kind` and its stamp [s]; not of satellite fixes.
 
+    `say` is called with what is found of `topic`.
     Unless poses are `headed`, one whose quaternion is no rotation is a position: its yaw is NaN.
     """
     values, offset = POSE_VALUES[kind], options.pose_yaw_offset
     late = late_by(options)
+    covariances = _Covariances(lambda count: say(ZeroCovariance.of(topic, count).sentence))
 
     def pose(message: Any, t: float) -> Pose | None:
         x, y, _, *rest = values(message)
         qx, qy, qz, qw, var_x, var_y, var_yaw = rest
+        covariances.take(var_x, var_y, var_yaw)
         angles = rotation_of(qx, qy, qz, qw)
         std_xy, std_yaw = deviation(var_x, var_y), deviation(var_yaw)
         if angles is None and headed:

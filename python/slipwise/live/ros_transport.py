@@ -223,15 +223,17 @@ class RosTransport:
             case "wheel":
                 return to_wheels(kind, options, self._notices.put, topic.name)
             case "pose":
-                return fixes.take_fix if kind == NAV_SAT_FIX else to_pose(kind, options, headed=self._headed)
+                if kind == NAV_SAT_FIX:
+                    return fixes.take_fix
+                return to_pose(kind, options, self._notices.put, topic.name, headed=self._headed)
             case "orientation":
                 return fixes.take_imu
             case "gyro":
                 return to_gyro
             case "other":
                 alone = FixPoses(options, headed=False)
-                convert = alone.take_fix if kind == NAV_SAT_FIX else to_pose(kind, options)
-                return _from_source(convert, topic.name)
+                pose = to_pose(kind, options, self._notices.put, topic.name) if kind != NAV_SAT_FIX else None
+                return _from_source(pose or alone.take_fix, topic.name)
 
     def _take(self, topic: str, kind: str, convert: ToSample, on_sample: OnSample) -> None:
         """Subscribe; a message that cannot be read is said once, and left out."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.findings.finding import Finding
-from slipwise.logs.findings.topics import NoRotation, ZeroTwist
+from slipwise.logs.findings.topics import NoRotation, ZeroCovariance, ZeroTwist
 from slipwise.logs.fixes import status_codes
 from slipwise.logs.header_clock import BagClocks
 from slipwise.logs.joints import speeds_from_angles
@@ -172,6 +172,8 @@ def pose_stream(context: BagContext, samples: Samples, inputs: Inputs | None = N
     if values.shape[1] > 7:
         columns["std_xy"] = deviation_of(values[:, 7:9])
         columns["std_yaw"] = deviation_of(values[:, 9:10])
+        if len(values) >= ZeroCovariance.FEWEST and not values[:, 7:10].any():
+            context.notes.append(ZeroCovariance.of(samples.topic, len(values)))
     finite = np.isfinite(values[:, 3:7]).all(axis=1)
     _count(context, samples, finite & ~good, "bad-quaternion", "poses whose quaternion is not a rotation")
     return context.stream("poses", samples, columns, good | ~finite)

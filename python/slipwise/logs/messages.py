@@ -76,6 +76,12 @@ def _with_covariance(pose: Any) -> Values:
     return (*_pose_values(pose.pose), covariance[0], covariance[7], covariance[35])
 
 
+def _odometry_values(message: Any) -> Values:
+    """Return a pose with its variances; zeros are a covariance that its publisher does not fill."""
+    values = _with_covariance(message.pose)
+    return values if any(values[7:]) else (*values[:7], *_UNKNOWN)
+
+
 def _fix_values(message: Any) -> Values:
     covariance = message.position_covariance
     known = message.position_covariance_type > 0
@@ -104,7 +110,7 @@ COMMAND_VALUES: dict[str, Callable[[Any], Values]] = {
     ACKERMANN: _ackermann_values,
 }
 POSE_VALUES: dict[str, Callable[[Any], Values]] = {
-    ODOMETRY: lambda message: _with_covariance(message.pose),
+    ODOMETRY: _odometry_values,
     POSE_STAMPED: lambda message: (*_pose_values(message.pose), *_UNKNOWN),
     POSE_WITH_COVARIANCE: lambda message: _with_covariance(message.pose),
     NAV_SAT_FIX: _fix_values,

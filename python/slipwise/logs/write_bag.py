@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,13 @@ from slipwise.errors import LogError
 from slipwise.files import write_whole
 from slipwise.logs.bag import FORCE_TOPIC, RUN_TOPIC, RUN_TYPE
 from slipwise.logs.log import Floats, LeftOut, Log, Run, has_course
-from slipwise.logs.messages import ACCEL_STAMPED, ODOMETRY, POSE_WITH_COVARIANCE, TWIST_STAMPED
+from slipwise.logs.messages import (
+    ACCEL_STAMPED,
+    ODOMETRY,
+    POSE_STAMPED,
+    POSE_WITH_COVARIANCE,
+    TWIST_STAMPED,
+)
 from slipwise.logs.rotation import quaternions_of
 
 if TYPE_CHECKING:
@@ -51,6 +57,7 @@ def write_mcap(log: Log, path: Path) -> tuple[LeftOut, ...]:
     from rosbags.typesys import Stores, get_typestore
 
     store = get_typestore(Stores.ROS2_HUMBLE)
+    make = _Messages(store, log.runs)
     entries: list[Entry] = []
     end = -1
     for run in log.runs:
@@ -61,10 +68,10 @@ def write_mcap(log: Log, path: Path) -> tuple[LeftOut, ...]:
             what = f"run {run.name} ends at {last:.10g} s, and stamps in a bag end at {_LATEST} s"
             raise LogError(what, where=str(path), advice="write a table (.csv, .parquet) instead")
         entries.append((start + shift, RUN_TOPIC, _string(store, run.name)))
-        entries.extend(_run_entries(run, shift, store))
+        entries.extend(_run_entries(run, shift, make))
         end = stop + shift
     entries.sort(key=lambda entry: entry[0])
-    write_whole(path, lambda temporary: _write(entries, temporary, store))
+    write_whole(path, lambda temporary: _write(entries, temporary, make))
     return _not_written(log)
 
 
@@ -105,7 +112,7 @@ def _filled(values: NDArray[Any]) -> int:
     return len(values) - sum(empty)
 
 
-def _write(entries: list[Entry], temporary: Path, store: Typestore) -> None:
+def _write(entries: list[Entry], temporary: Path, make: _Messages) -> None:
     from rosbags.rosbag2 import StoragePlugin, Writer
 
     bag = temporary.parent / "bag"  # the writer wants a folder that is not there yet
@@ -114,12 +121,12 @@ def _write(entries: list[Entry], temporary: Path, store: Typestore) -> None:
             RUN_TOPIC: RUN_TYPE,
             COMMAND_TOPIC: TWIST_STAMPED,
             WHEEL_TOPIC: ODOMETRY,
-            POSE_TOPIC: POSE_WITH_COVARIANCE,
+            POSE_TOPIC: make.pose_type,
             FORCE_TOPIC: ACCEL_STAMPED,
         }
         used = {topic for _, topic, _ in entries}
         connections = {
-            topic: writer.add_connection(topic, kind, typestore=store)
+            topic: writer.add_connection(topic, kind, typestore=make.store)
             for topic, kind in types.items()
             if topic in used
         }
@@ -151,8 +158,7 @@ def _stamps(t: Floats, shift: int) -> list[int]:
     )
 
 
-def _run_entries(run: Run, shift: int, store: Typestore) -> Iterator[Entry]:
-    make = _Messages(store)
+def _run_entries(run: Run, shift: int, make: _Messages) -> Iterator[Entry]:
     if run.commands is not None:
         c = run.commands
         rows = zip(_stamps(c.t, shift), c.v.tolist(), c.vy.tolist(), c.omega.tolist(), strict=True)
@@ -181,10 +187,13 @@ def _string(store: Typestore, text: str) -> memoryview:
 
 
 class _Messages:
-    """Makes serialised messages."""
+    """Makes serialised messages; poses that do not say how sure they are have no covariance."""
 
-    def __init__(self, store: Typestore) -> None:
-        self._store = store
+    def __init__(self, store: Typestore, runs: Iterable[Run]) -> None:
+        deviations = (std for run in runs for std in (run.poses.std_xy, run.poses.std_yaw))
+        known = any(std is not None and np.isfinite(std).any() for std in deviations)
+        self.pose_type = POSE_WITH_COVARIANCE if known else POSE_STAMPED
+        self.store = store
         types: dict[str, Callable[..., Any]] = dict(store.types)
         self._header, self._time = types["std_msgs/msg/Header"], types["builtin_interfaces/msg/Time"]
         self._vector, self._twist = types["geometry_msgs/msg/Vector3"], types["geometry_msgs/msg/Twist"]
@@ -212,29 +221,29 @@ class _Messages:
 
     def command(self, stamp: int, twist: Any) -> memoryview:
         message = self._types[TWIST_STAMPED](self.header(stamp, "base_link"), twist)
-        return self._store.serialize_cdr(message, TWIST_STAMPED)
+        return self.store.serialize_cdr(message, TWIST_STAMPED)
 
     def odometry(self, stamp: int, twist: Any) -> memoryview:
         with_covariance = self._twist_covariance(twist, self._no_covariance)
         message = self._types[ODOMETRY](
             self.header(stamp, "odom"), "base_link", self._nowhere, with_covariance
         )
-        return self._store.serialize_cdr(message, ODOMETRY)
+        return self.store.serialize_cdr(message, ODOMETRY)
 
     def force(self, stamp: int, x: float, y: float) -> memoryview:
         over_mass = self._types["geometry_msgs/msg/Accel"](
             self._vector(x, y, 0.0), self._vector(0.0, 0.0, 0.0)
         )
         message = self._types[ACCEL_STAMPED](self.header(stamp, "base_link"), over_mass)
-        return self._store.serialize_cdr(message, ACCEL_STAMPED)
+        return self.store.serialize_cdr(message, ACCEL_STAMPED)
 
     def pose(self, stamp: int, frame: str, row: list[float]) -> memoryview:
         x, y, z, qx, qy, qz, qw, variance_xy, variance_yaw = row
-        covariance = np.zeros(36)
-        covariance[0] = covariance[7] = variance_xy
-        covariance[35] = variance_yaw
         pose = self._pose(self._point(x, y, z), self._quaternion(qx, qy, qz, qw))
-        message = self._types[POSE_WITH_COVARIANCE](
-            self.header(stamp, frame), self._pose_covariance(pose, covariance)
-        )
-        return self._store.serialize_cdr(message, POSE_WITH_COVARIANCE)
+        if self.pose_type == POSE_WITH_COVARIANCE:
+            covariance = np.zeros(36)
+            covariance[0] = covariance[7] = variance_xy
+            covariance[35] = variance_yaw
+            pose = self._pose_covariance(pose, covariance)
+        message = self._types[self.pose_type](self.header(stamp, frame), pose)
+        return self.store.serialize_cdr(message, self.pose_type)

@@ -13,7 +13,15 @@ from slipwise.errors import SettingsError
 from slipwise.live.ros_samples import FixPoses, to_command, to_pose, to_wheels
 from slipwise.live.samples import Command, Pose, Wheels
 from slipwise.live.stamps import Stamps, seconds_of
-from slipwise.logs.messages import ACKERMANN, JOINT_STATE, ODOMETRY, POSE_STAMPED, TWIST, TWIST_STAMPED
+from slipwise.logs.messages import (
+    ACKERMANN,
+    JOINT_STATE,
+    ODOMETRY,
+    POSE_STAMPED,
+    POSE_WITH_COVARIANCE,
+    TWIST,
+    TWIST_STAMPED,
+)
 from slipwise.logs.options import LogOptions
 
 
@@ -59,6 +67,21 @@ def test_an_odometry_is_wheels_or_a_pose_with_its_deviations() -> None:
     unknown = to_pose(ODOMETRY, LogOptions())(odometry(0.0), 2.0)
     assert unknown is not None
     assert unknown.std_xy is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "variance", "said"),
+    [(POSE_WITH_COVARIANCE, 0.0, 1), (POSE_WITH_COVARIANCE, 0.01, 0), (ODOMETRY, 0.0, 0)],
+)
+def test_covariances_of_zeros_are_said_once_of_a_message_made_for_them(
+    kind: str, variance: float, said: int
+) -> None:
+    texts: list[str] = []
+    convert = to_pose(kind, LogOptions(), texts.append, "/amcl_pose")
+    for k in range(50):
+        convert(odometry(variance), 2.0 + k)
+    assert len(texts) == said
+    assert all("covariances of all 20 poses of /amcl_pose are zero" in text for text in texts)
 
 
 def test_a_pose_without_a_rotation_is_said() -> None:

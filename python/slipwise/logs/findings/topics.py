@@ -80,6 +80,29 @@ class NoRotation(Check):
         )
 
 
+class ZeroCovariance(Check):
+    """Poses that say of themselves that they are exact, in the message that is made to say how sure they are.
+
+    Of an `Odometry` zeros are usual, and say nothing.
+    """
+
+    kind, family, spoils = "zero-covariance", "poses", False
+    means = "all covariances of the poses are zero: who fuses them takes them for exact"
+    shows = "every variance in 20 `PoseWithCovarianceStamped` and more is 0 (in `Odometry` that is usual)"
+    cure = "none: slipwise learns how far poses scatter; fill the covariance for who fuses them"
+    FEWEST = 20  # poses
+
+    @classmethod
+    def of(cls, topic: str, count: int) -> Finding:
+        """Say of which topic, and of how many poses."""
+        return cls.found(
+            f"the covariances of all {count} poses of {topic} are zero: a filter that fuses them "
+            "(robot_localization) takes them for exact",
+            f"Fill covariance in the node that publishes {topic}; slipwise learns how far poses scatter.",
+            evidence=count,
+        )
+
+
 class MissingFile(Check):
     """A file of a split bag that is not there."""
 
@@ -119,6 +142,7 @@ TOPICS: tuple[Check, ...] = (
     SilentTopic(),
     ZeroTwist(),
     NoRotation(),
+    ZeroCovariance(),
     MissingFile(),
     ArmJoints(),
 )

@@ -26,6 +26,7 @@ from slipwise.logs import LogOptions, open_log
 from slipwise.logs.findings.diagnose import diagnose
 
 SECONDS = 90.0
+CERTAIN = "geometry_msgs/msg/PoseWithCovarianceStamped"
 #: Logs with commands and wheels.
 REAL = (
     "husky/tile_deflated_tyres",
@@ -112,6 +113,16 @@ def without_rotation(bag: Bag, drive: FieldDrive) -> None:
         bag.add(stamp, "/mocap/pose", POSE, bag.make(POSE, bag.header(stamp), pose))
 
 
+def exact(bag: Bag, drive: FieldDrive) -> None:
+    write_commands(bag, drive)
+    write_wheels(bag, drive)
+    for k in drive.every(0.1):
+        stamp = recorder(drive.t[k])
+        measured = bag.pose(*map(float, drive.pose[k]))
+        pose = bag.make("geometry_msgs/msg/PoseWithCovariance", measured, np.zeros(36))
+        bag.add(stamp, "/amcl_pose", CERTAIN, bag.make(CERTAIN, bag.header(stamp), pose))
+
+
 def postdated(bag: Bag, drive: FieldDrive) -> None:
     write_commands(bag, drive)
     write_wheels(bag, drive)
@@ -129,6 +140,7 @@ FAULTS: dict[str, tuple[Callable[[Bag, FieldDrive], None], str]] = {
     "two robots": (of_another_robot, "other-robot"),
     "odometry nobody publishes": (nobody_publishes, "silent-topic"),
     "no rotation": (without_rotation, "no-rotation"),
+    "covariances of zeros": (exact, "zero-covariance"),
     "transform tolerance": (postdated, "postdated-poses"),
 }
 
