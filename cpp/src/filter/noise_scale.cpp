@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "slipwise/filter/rows_of_positions.hpp"
 #include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
@@ -19,7 +20,8 @@ void NoiseScale::learn(const SegmentLinearization& at, const Eigen::MatrixXd& co
     return;
   }
   const RowsCovariance open = at.by_parameter * covariance * at.by_parameter.transpose();
-  follow(at.path.directions(), error_of(segment, at).cwiseAbs2() + open.diagonal(), expected);
+  const Rows squared = error_of(segment, at).cwiseAbs2() + open.diagonal();
+  follow(at.path.directions(), alike_of_positions(segment.measured, squared, expected), expected);
 }
 
 void NoiseScale::learn_prediction(const Directions& directions, const RowErrors& shown) {

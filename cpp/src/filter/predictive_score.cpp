@@ -2,6 +2,7 @@
 // Scoring predictions of segments.
 #include "slipwise/filter/predictive_score.hpp"
 
+#include "slipwise/filter/rows_of_positions.hpp"
 #include "slipwise/linear/innovation.hpp"
 
 namespace slipwise {
@@ -14,7 +15,10 @@ ScoredSegment PredictiveScore::score(const MotionModel& model, const Estimate& e
   const RowsCovariance covariance = open + scaled_covariance(expected, scale_for(at.path, noise_scale_.value()));
   const Rows innovation = error_of(segment, at);
   if (shows_noise(segment)) {
-    noise_scale_.learn_prediction(at.path.directions(), {innovation.cwiseAbs2(), open.diagonal(), expected.diagonal()});
+    const Rows size = expected.diagonal();
+    noise_scale_.learn_prediction(at.path.directions(),
+                                  {alike_of_positions(segment.measured, innovation.cwiseAbs2(), size),
+                                   alike_of_positions(segment.measured, open.diagonal(), size), size});
   }
   return {innovation, covariance, normalised_square(innovation, covariance)};
 }

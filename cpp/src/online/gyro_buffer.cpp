@@ -23,6 +23,7 @@ SLIPWISE_TUNING(kCourseStd, 0.15);   // [rad] such a turn, the change of the sid
 SLIPWISE_TUNING(kDrift, 1e-4);       // [rad/s] per root of a second
 SLIPWISE_TUNING(kWalk, 3e-3);        // [rad] per root of a second: noise of the gyro
 SLIPWISE_TUNING(kScale, 5e-3);       // of the turn: the gyro's scale
+SLIPWISE_TUNING(kPiece, 2.5);        // [s] about so long are the pieces of a segment whose turns are learned from
 
 double squared(double value) { return value * value; }
 
@@ -76,30 +77,45 @@ void GyroBuffer::see_course(const MeasuredPose& position) {
 }
 
 std::optional<GyroTurn> GyroBuffer::turn(double start, double end) const {
-  const auto turned = integral(samples_, start, end);
-  if (!turned) {
+  const auto whole = turns(start, end, 1);
+  if (!whole) {
     return std::nullopt;
   }
-  const double seconds = end - start;
-  const double angle = *turned - bias_ * seconds;
-  const double variance = squared(kWalk) * seconds + variance_ * seconds * seconds + squared(kScale * angle);
-  return GyroTurn{.angle = angle, .std = std::sqrt(variance)};
+  return GyroTurn{.angle = whole->z[0], .std = std::sqrt(std::get<YawRateSensor>(whole->sensor.kind).covariance(0, 0))};
+}
+
+/// The bias and the scale are off by the same in all pieces.
+std::optional<Measured> GyroBuffer::turns(double start, double end, Eigen::Index pieces) const {
+  const double seconds = (end - start) / static_cast<double>(pieces);
+  Rows angles(pieces);
+  for (Eigen::Index i = 0; i < pieces; ++i) {
+    const double from = start + seconds * static_cast<double>(i);
+    const auto turned = integral(samples_, from, i + 1 == pieces ? end : from + seconds);
+    if (!turned) {
+      return std::nullopt;
+    }
+    angles[i] = *turned - bias_ * seconds;
+  }
+  RowsCovariance covariance = squared(kScale) * angles * angles.transpose();
+  covariance.array() += variance_ * squared(seconds);
+  covariance.diagonal().array() += squared(kWalk) * seconds;
+  return Measured{.sensor = {.kind = YawRateSensor{covariance}}, .z = angles};
 }
 
 Measured measured_turn(const GyroTurn& turn) {
-  return {.sensor = {.kind = YawRateSensor{.std = turn.std}}, .z = Rows::Constant(1, turn.angle)};
+  return {.sensor = {.kind = YawRateSensor{RowsCovariance::Constant(1, 1, squared(turn.std))}},
+          .z = Rows::Constant(1, turn.angle)};
 }
 
 void GyroBuffer::measure(Segment& segment) const {
-  Measured& course = segment.measured.front();
-  auto* positions = std::get_if<PositionSensor>(&course.sensor.kind);
+  auto* positions = std::get_if<PositionSensor>(&segment.measured.front().sensor.kind);
   if (positions == nullptr) {
     return;
   }
-  if (const auto turned = turn(segment.start, segment.end)) {
+  const auto pieces = static_cast<Eigen::Index>(std::round((segment.end - segment.start) / kPiece));
+  if (const auto turned = turns(segment.start, segment.end, std::clamp<Eigen::Index>(pieces, 1, kMostSensorRows))) {
     positions->turn = false;
-    course.z.conservativeResize(2);
-    segment.measured.push_back(measured_turn(*turned));
+    segment.measured.push_back(*turned);
   }
 }
 

@@ -21,29 +21,50 @@ constexpr double kUnknownTurn = 3.0;   // [rad] of a turn that a gyro did not se
 constexpr double kActuatorBack = 5.0;  // [s] of commands before wheel speeds; their filter goes on from the last
 constexpr double kLargestForce = 1e3;  // [m/s^2] that a caller may expect
 
-}  // namespace
-
-/// A pose as it is; a position with the heading that its course makes, where it has one.
-std::optional<TimedPose> SegmentStream::headed(TimedPose timed, ChordFinder& chords) const {
-  if (timed.pose.position) {
-    const auto found = chords.push(timed.pose, gate_inputs(timed.pose.t));
-    if (!found) {
-      return std::nullopt;
+void see_noise(const std::vector<SegmentCut>& cuts, SegmentCutter& cutter) {
+  for (const SegmentCut& cut : cuts) {
+    if (cut.fitted) {
+      cutter.see_noise(cut.fitted->std);
     }
-    timed.pose = *found;
   }
-  return timed;
 }
 
-/// What a segment between positions is measured by: chords.
-void SegmentStream::set_course(Segment& segment, const SegmentCut& cut) const {
-  const auto& first = cut.first.headings[0];
-  const auto& second = cut.second.headings[0];
-  if (!first || !second) {
-    return;
+/// What a car does by the curves that are known at the end.
+InputBuffer by_curves(const CarStream& car, double start, double end) {
+  const InputHistory twists = car.inputs(start, end, end);
+  InputBuffer found(std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < twists.size(); ++i) {
+    found.push({twists.time(i), twists.sample(i)});
   }
-  segment.measured.front().sensor.kind =
-      PositionSensor{.chords = {first->chord, second->chord}, .std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
+  return found;
+}
+
+}  // namespace
+
+/// Gives a position the heading that the inputs and the positions of late make, where they make one.
+bool SegmentStream::head(TimedPose& timed, CourseFinder& courses) const {
+  if (timed.pose.position) {
+    const auto yaw = courses.push(timed.pose, gate_inputs(timed.pose.t));
+    timed.pose.yaw = yaw.value_or(timed.pose.yaw);
+    return yaw.has_value();
+  }
+  return true;
+}
+
+/// Segments between positions with what all these tell of the motion; those of which they tell no course are rejected.
+std::vector<SegmentCut> SegmentStream::fitted(std::vector<SegmentCut> cuts, const Pose2& place) const {
+  for (SegmentCut& cut : cuts) {
+    if (cut.first.position && !cut.rejected) {
+      const InputBuffer& best = gate_inputs(cut.first.t);
+      const InputBuffer& way = best.unknown_since(cut.first.t, cut.second.t) ? inputs() : best;
+      const bool curves = car_ && &way == &commands_;
+      cut.fitted = curves
+                       ? fit_positions(cut.positions, cut.second.t, by_curves(*car_, cut.first.t, cut.second.t), place)
+                       : fit_positions(cut.positions, cut.second.t, way, place);
+      cut.rejected = cut.fitted ? cut.rejected : std::optional(Reason::NoCourse);
+    }
+  }
+  return cuts;
 }
 
 /// Headings are integrals of a gyro, one every `kHeadings`, and a frame ends where samples are missing.
@@ -89,6 +110,7 @@ void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
 }
 
 void SegmentStream::emit_slip(const std::vector<SegmentCut>& cuts) {
+  see_noise(cuts, slip_);
   for (const SegmentCut& cut : cuts) {
     if (!cut.rejected) {
       items_.emplace_back(SlipSegment{driven(cut, true, now_)});
@@ -107,6 +129,7 @@ void SegmentStream::emit_twists(const std::vector<TwistStretch>& stretches) {
 }
 
 void SegmentStream::emit_learned(const std::vector<SegmentCut>& cuts) {
+  see_noise(cuts, learned_);
   for (const SegmentCut& cut : cuts) {
     if (cut.rejected) {
       reject(Stream::Pose, *cut.rejected, cut.first.t);
@@ -138,16 +161,15 @@ std::vector<DrivenSegment> SegmentStream::pending_segments() const {
   PoseAccuracies accuracy = accuracy_;
   PoseGate gate = gate_;
   PoseTimer timer = timer_;
-  ChordFinder chords = chords_;
   SegmentCutter cutter = learned_;
   std::vector<DrivenSegment> found;
   for (const MeasuredPose& raw : poses_) {
     for (const MeasuredPose& pose : gate.push(complete(raw, accuracy), gate_inputs(raw.t)).accepted) {
-      auto timed = timer.push(pose, settings_.rules.late_factor);
-      if (timed) {
-        timed = headed(*std::move(timed), chords);
+      const auto timed = timer.push(pose, settings_.rules.late_factor);
+      if (!timed) {
+        continue;
       }
-      for (const SegmentCut& cut : timed ? cutter.push(*timed, inputs()) : std::vector<SegmentCut>{}) {
+      for (const SegmentCut& cut : fitted(cutter.push(*timed, inputs()), settings_.sensor)) {
         if (!cut.rejected) {
           found.push_back(driven(cut, !settings_.from_commands, raw.t));
         }

@@ -152,14 +152,22 @@ HeldMotion InputBuffer::held_motion(double start, double end) const {
   return sum;
 }
 
-Pose2 InputBuffer::reckoned(double start, double end) const {
-  Pose2 pose;
+std::vector<InputSample> InputBuffer::held(double start, double end) const {
+  std::vector<InputSample> found;
   for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1; i < samples_.size() && samples_[i].t < end;
        ++i) {
-    const double until = i + 1 < samples_.size() ? std::min(samples_[i + 1].t, end) : end;
-    const auto& [v, vy, omega] = samples_[i].twist;
-    const double seconds = std::max(until - std::max(samples_[i].t, start), 0.0);
-    pose = compose(pose, exp(Eigen::Vector3d(v, vy, omega) * seconds));
+    found.push_back({std::max(samples_[i].t, start), samples_[i].twist});
+  }
+  return found;
+}
+
+Pose2 InputBuffer::reckoned(double start, double end) const {
+  const std::vector<InputSample> pieces = held(start, end);
+  Pose2 pose;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const double until = i + 1 < pieces.size() ? pieces[i + 1].t : end;
+    const auto& [v, vy, omega] = pieces[i].twist;
+    pose = compose(pose, exp(Eigen::Vector3d(v, vy, omega) * (until - pieces[i].t)));
   }
   return pose;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "slipwise/filter/rows_of_positions.hpp"
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/linear/tuning.hpp"
@@ -67,8 +68,10 @@ void KnownSources::look(const MotionPosterior& posterior, const DrivenSegment& d
   const RowsCovariance open = at.by_parameter * posterior.estimate.covariance * at.by_parameter.transpose();
   const RowsCovariance expected = slip_covariance(at.path, posterior.noise) +
                                   at.path.measurement_noise(rows_of(seen.segment.measured), posterior.noise);
+  const Rows size = expected.diagonal();
   noise_.learn(item.classes[0], at.path.directions(),
-               {shorter_error_of(seen.segment, at).cwiseAbs2(), open.diagonal(), expected.diagonal()});
+               {alike_of_positions(seen.segment.measured, shorter_error_of(seen.segment, at).cwiseAbs2(), size),
+                alike_of_positions(seen.segment.measured, open.diagonal(), size), size});
 }
 
 /// Puts the segment where and when it really was; false while too little is known of that.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <variant>
 #include <vector>
 
 #include "slipwise/archive/bytes.hpp"
@@ -52,12 +53,27 @@ bool is_covariance(const Eigen::MatrixXd& matrix) {
 
 bool are_variances(const Eigen::VectorXd& values) { return possible(values) && (values.array() >= 0.0).all(); }
 
+bool fits_together(const PoseSensor& /*sensor*/) { return true; }
+
+bool fits_together(const PositionSensor& sensor) {
+  const Eigen::Index count = sensor.at.size();
+  return count > 0 && sensor.weights.size() == count && sensor.fitted.cols() == count &&
+         sensor.gain.cols() == 2 * count && possible(sensor.at) && possible(sensor.weights) &&
+         sensor.weights.minCoeff() > 0.0 && possible(sensor.fitted) && possible(sensor.gain) && possible(sensor.motion);
+}
+
+bool fits_together(const YawRateSensor& sensor) {
+  return 0 < sensor.covariance.rows() && sensor.covariance.rows() <= kMostSensorRows &&
+         is_covariance(sensor.covariance);
+}
+
 /// Whether there are sensors, and each measured as many numbers as it has rows.
 bool are_of_sensors(const std::vector<Measured>& all) {
   Eigen::Index rows = 0;
   for (const auto& [sensor, z] : all) {
     rows += z.size();
-    if (z.size() != directions(sensor).size() || !possible(z) || !possible(sensor.place.vector()) ||
+    const bool whole = std::visit([](const auto& kind) { return fits_together(kind); }, sensor.kind);
+    if (!whole || z.size() != directions(sensor).size() || !possible(z) || !possible(sensor.place.vector()) ||
         !possible(sensor.clock) || !are_variances(sensor.noise_factor)) {
       return false;
     }

@@ -24,10 +24,9 @@ SLIPWISE_TUNING(kStarts, 10.0);  // segments begin this many times within the le
 void SegmentStream::begin_others() {
   for (std::size_t i = 1; i < settings_.sources.size(); ++i) {
     const SourceSettings& source = settings_.sources[i];
-    others_.push_back(
-        {.settings = source,
-         .cutter = SegmentCutter(settings_.segment_length, settings_.rules, false, settings_.segment_length / kStarts),
-         .chords = ChordFinder(source.sensor)});
+    others_.push_back({.settings = source,
+                       .cutter = SegmentCutter(settings_.segment_length, settings_.rules, false,
+                                               settings_.segment_length / kStarts)});
   }
 }
 
@@ -84,13 +83,11 @@ void SegmentStream::process_other(PoseSource& source, const GatedPoses& gated, d
   reject_gated(gated);
   for (const MeasuredPose& pose : gated.accepted) {
     auto timed = source.timer.push(pose, settings_.rules.late_factor);
-    const bool late = !timed;
-    timed = late ? timed : headed(*timed, source.chords);
     if (!timed) {
-      reject(Stream::Pose, late ? Reason::LatePose : Reason::NoCourse, pose.t);
+      reject(Stream::Pose, Reason::LatePose, pose.t);
       continue;
     }
-    for (const SegmentCut& cut : source.cutter.push(*timed, inputs())) {
+    for (const SegmentCut& cut : fitted(source.cutter.push(*timed, inputs()), source.settings.sensor)) {
       emit_other(source, cut, known_at);
     }
   }

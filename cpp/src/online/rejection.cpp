@@ -24,7 +24,7 @@ constexpr std::array<Words, kReasons> kWords{{
     {.name = "standing-still", .text = "the robot was commanded to stand still for the whole segment"},
     {.name = "heading-ambiguous", .text = "between two poses the robot may have turned by more than half a turn"},
     {.name = "no-course",
-     .text = "a position to which no chord leads: the robot hardly moved, or not as its inputs say"},
+     .text = "positions that tell no course together: the robot hardly moved, or not as its inputs say"},
     {.name = "no-fix", .text = "the satellite receiver says that it has no position"},
     {.name = "poor-pose", .text = "between poses whose errors are far larger than those of the first source"},
     {.name = "steep-attitude",

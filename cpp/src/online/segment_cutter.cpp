@@ -14,8 +14,11 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kRecent = 64;     // intervals between poses that tell the median one
-SLIPWISE_TUNING(kLeastFraction, 0.25);  // of the length asked for; a frame shorter than this is no segment
+constexpr std::size_t kRecent = 64;       // intervals between poses that tell the median one
+SLIPWISE_TUNING(kLeastFraction, 0.25);    // of the length asked for; a frame shorter than this is no segment
+SLIPWISE_TUNING(kLeastOfPositions, 0.5);  // of it; so long is a segment between positions at least,
+SLIPWISE_TUNING(kTurnKnown, 0.01);        // [rad] where they tell its turn so well, which is little beside its slip
+SLIPWISE_TUNING(kLasting, 0.1);           // [m] by so much positions are off for seconds, however little they scatter
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -24,30 +27,6 @@ double median_of(std::vector<double> values) {
     return *middle;
   }
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
-/// The second position, headed by another chord where its own begins at the first: the turn between such a pair says
-/// nothing that their distance does not. Empty if it has no other.
-std::optional<MeasuredPose> headed_apart(const MeasuredPose& first, MeasuredPose second) {
-  auto& [used, other] = second.headings;
-  if (!used || used->chord.from != first.t) {
-    return second;
-  }
-  if (!other) {
-    return std::nullopt;
-  }
-  second.yaw = other->yaw;
-  std::swap(used, other);
-  return second;
-}
-
-/// From when on inputs must be known for a segment between these [s].
-double earliest(const MeasuredPose& first, const MeasuredPose& second) {
-  const auto chord_start = [](const MeasuredPose& pose) {
-    const std::optional<ChordHeading>& heading = pose.headings.front();
-    return heading ? heading->chord.from : pose.t;
-  };
-  return std::min({first.t, chord_start(first), chord_start(second)});
 }
 
 double speed_of(const BodyTwist& fastest) { return std::max(fastest.v, fastest.omega); }
@@ -114,7 +93,8 @@ std::vector<SegmentCut> SegmentCutter::push(const TimedPose& pose, const InputBu
     unknown_since_.reset();
   }
   poses_.push_back(pose);
-  cut(length_, false, inputs, out);
+  const double length = wanted();
+  cut(tells_enough(length, inputs) ? pose.pose.t - poses_.front().pose.t : length, false, inputs, out);
   return out;
 }
 
@@ -125,7 +105,7 @@ std::vector<SegmentCut> SegmentCutter::finish(const InputBuffer& inputs) {
 }
 
 void SegmentCutter::end_frame(const InputBuffer& inputs, std::vector<SegmentCut>& out) {
-  double length = length_;
+  double length = wanted();
   if (!poses_.empty() && !any_ && whole_frames_) {
     const double whole = poses_.back().pose.t - poses_.front().pose.t;
     length = !later(kLeastFraction * length, whole) && whole < length ? whole : length;
@@ -148,14 +128,42 @@ void SegmentCutter::cut(double length, bool last, const InputBuffer& inputs, std
     const auto end = nearest(start.pose.t + length, tolerance, last);
     std::size_t next = 1;
     if (end && *end > 0) {
-      const auto second = headed_apart(start.pose, poses_[*end].pose);
-      const auto wrong = second ? problem(*end, inputs) : std::optional(Reason::NoCourse);
-      out.push_back({.first = start.pose, .second = second.value_or(poses_[*end].pose), .rejected = wrong});
+      const auto wrong = problem(*end, inputs);
+      out.push_back({.first = start.pose,
+                     .second = poses_[*end].pose,
+                     .rejected = wrong,
+                     .positions = wrong ? std::vector<MeasuredPose>{} : positions_until(*end)});
       next = next_start(*end, wrong, inputs);
     }
     any_ = true;
     poses_.erase(poses_.begin(), poses_.begin() + static_cast<std::ptrdiff_t>(std::min(next, poses_.size())));
   }
+}
+
+double SegmentCutter::wanted() const {
+  return !poses_.empty() && poses_.front().pose.position ? std::max(length_, rules_.of_positions) : length_;
+}
+
+/// Whether positions so far tell the turn of a straight way of that length as well as they need to. They tell its
+/// curvature by a parabola's last coefficient, whose variance is 180 of theirs, over their number and the length's
+/// fourth power.
+bool SegmentCutter::tells_enough(double length, const InputBuffer& inputs) const {
+  const TimedPose& start = poses_.front();
+  const double end = poses_.back().pose.t;
+  if (!start.pose.position || rules_.of_positions == 0.0 || later(start.pose.t + kLeastOfPositions * length, end)) {
+    return false;
+  }
+  const double way = inputs.driven(start.pose.t, end).distance;
+  return std::sqrt(720.0 / static_cast<double>(poses_.size())) * std::max(noise_, kLasting) <= kTurnKnown * way;
+}
+
+/// Neighbouring segments share a moment and no position.
+std::vector<MeasuredPose> SegmentCutter::positions_until(std::size_t end) const {
+  std::vector<MeasuredPose> found;
+  for (std::size_t i = 0; i < end && poses_.front().pose.position; ++i) {
+    found.push_back(poses_[i].pose);
+  }
+  return found;
 }
 
 std::size_t SegmentCutter::first_from(double t) const {
@@ -182,12 +190,12 @@ std::optional<std::size_t> SegmentCutter::nearest(double wanted, double toleranc
 
 /// Why the first pose and this one make no segment, if they do not.
 std::optional<Reason> SegmentCutter::problem(std::size_t end, const InputBuffer& inputs) const {
-  const double from = earliest(poses_.front().pose, poses_[end].pose);
+  const double from = poses_.front().pose.t;
   const double to = poses_[end].pose.t;
   if (inputs.empty() || inputs.unknown_since(from, to)) {
     return Reason::UnknownInput;
   }
-  const BodyTwist fastest = inputs.fastest(poses_.front().pose.t, to);
+  const BodyTwist fastest = inputs.fastest(from, to);
   if (speed_of(fastest) <= rules_.still_speed) {
     return Reason::StandingStill;
   }

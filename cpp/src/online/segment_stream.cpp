@@ -19,6 +19,7 @@ namespace slipwise {
 namespace {
 
 SLIPWISE_TUNING(kSlipLength, 1.0);                // [s] of segments behind wheel speeds
+SLIPWISE_TUNING(kOfPositions, 5.0);               // [s] of those between positions, which tell together how they turn
 SLIPWISE_TUNING(kWheelLength, 1.0);               // [s] wheel speeds tell a step's response from its start on
 constexpr double kLongestGap = 120.0;             // [s] between poses, after which the segment before it may still end
 constexpr long kFramesApart = 1'000'000'000'000;  // numbers of frames before a break and after it are never the same
@@ -29,6 +30,11 @@ std::size_t index(Stream stream) { return static_cast<std::size_t>(stream); }
 
 /// A standard deviation that can be one.
 double allowed(double std) { return std >= 0.0 ? std : std::numeric_limits<double>::quiet_NaN(); }
+
+SegmentRules between_positions(SegmentRules rules, double length) {
+  rules.of_positions = length;
+  return rules;
+}
 
 }  // namespace
 
@@ -42,11 +48,12 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
       rates_(settings.sensor),
       held_(settings.unknown_after),
       now_(-kNever),
-      learned_(settings.segment_length, settings.rules, settings.whole_frames, settings.stride),
-      slip_(kSlipLength, settings.rules, true),
+      learned_(settings.segment_length, between_positions(settings.rules, settings.segment_length),
+               settings.whole_frames, settings.stride),
+      slip_(kSlipLength, between_positions(settings.rules, kOfPositions), true),
       wheel_cutter_(kWheelLength, settings.rules, true),
       twists_(settings.rules, settings.sensor),
-      chords_(settings.sensor) {
+      courses_(settings.sensor) {
   double longest = settings.segment_length;
   for (const double horizon : settings.horizons) {
     targets_.emplace_back(horizon, settings.rules, false);
@@ -254,28 +261,25 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
       continue;
     }
     readings_.gyro().see_inputs(pose.t, gate_inputs(pose.t), settings_.rules.still_speed);
-    timed = headed(*std::move(timed), chords_);
-    if (!timed) {
-      reject(Stream::Pose, Reason::NoCourse, pose.t);
-      continue;
-    }
-    heading_ = timed->pose.yaw;
-    rates_.push(timed->pose);
-    if (pose.position) {
-      readings_.gyro().see_course(timed->pose);
-    }
-    if (car_) {
-      car_->push_pose(timed->pose);
+    if (head(*timed, courses_)) {
+      heading_ = timed->pose.yaw;
+      rates_.push(timed->pose);
+      if (pose.position) {
+        readings_.gyro().see_course(timed->pose);
+      }
+      if (car_) {
+        car_->push_pose(timed->pose);
+      }
     }
     if (settings_.from_commands && wheels_ever_) {
-      emit_slip(slip_.push(*timed, wheels_));
+      emit_slip(fitted(slip_.push(*timed, wheels_), settings_.sensor));
     } else if (settings_.from_commands && !pose.position &&
-               !settings_.heading_only) {  // a course lags behind the heading by half its chord
+               !settings_.heading_only) {  // a course lags behind the heading by half its way
       emit_twists(twists_.push(*timed, commands_));
     }
-    emit_learned(learned_.push(*timed, inputs()));
+    emit_learned(fitted(learned_.push(*timed, inputs()), settings_.sensor));
     for (std::size_t i = 0; i < targets_.size(); ++i) {
-      emit_targets(i, targets_[i].push(*timed, inputs()));
+      emit_targets(i, fitted(targets_[i].push(*timed, inputs()), settings_.sensor));
     }
   }
 }
@@ -285,17 +289,17 @@ void SegmentStream::finish_cutters() {
     emit_wheel_segments(wheel_cutter_.finish(commands_));
     emit_twists(twists_.finish(commands_));
     if (wheels_ever_) {
-      emit_slip(slip_.finish(wheels_));
+      emit_slip(fitted(slip_.finish(wheels_), settings_.sensor));
     }
   }
-  emit_learned(learned_.finish(inputs()));
+  emit_learned(fitted(learned_.finish(inputs()), settings_.sensor));
   for (PoseSource& source : others_) {
-    for (const SegmentCut& cut : source.cutter.finish(inputs())) {
+    for (const SegmentCut& cut : fitted(source.cutter.finish(inputs()), source.settings.sensor)) {
       emit_other(source, cut, std::max(now_, cut.second.t));
     }
   }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
-    emit_targets(i, targets_[i].finish(inputs()));
+    emit_targets(i, fitted(targets_[i].finish(inputs()), settings_.sensor));
   }
 }
 
@@ -316,7 +320,11 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                   .gx = cut.first.gx,
                   .gy = cut.first.gy,
                   .heading = cut.first.yaw};
-  set_course(segment, cut);
+  if (cut.fitted) {
+    segment.measured.front().sensor.kind = cut.fitted->sensor;
+    segment.measured.front().z = cut.fitted->z;
+    segment.heading = cut.fitted->heading;
+  }
   if (settings_.heading_only) {
     set_turn(segment);
   }

@@ -2,8 +2,10 @@
 // The linear variance equation along a path (thesis 4.2 to 4.8 with dt counted once).
 #include "slipwise/segment/segment_covariance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "slipwise/linear/same_stamp.hpp"
@@ -22,17 +24,26 @@ class RowsBySteps {
 
   explicit RowsBySteps(const SegmentPath& path) : path_(path) {
     const std::vector<Seen> seen = path.seen();
+    for (const Seen& each : seen) {
+      rows_ += each.z.size();
+    }
+    ahead_.setZero(rows_, 3);
+    levers_.setZero(rows_, 1);
+    Eigen::Index row = 0;
     for (std::size_t k = 0; k < seen.size(); ++k) {
       for (std::size_t i = 0; std::cmp_less(i, path.sights[k].stamps.size()); ++i) {
-        looked_.push_back({path.sights[k].at[i], rows_, seen[k].by_pose[i]});
+        looked_.push_back({path.sights[k].at[i], row, seen[k].by_pose[i]});
+        pass(looked_.back(), 1.0);
       }
-      rows_ += seen[k].z.size();
+      row += seen[k].z.size();
     }
+    std::ranges::stable_sort(looked_, {}, &Looked::place);
   }
 
   Eigen::Index rows() const { return rows_; }
 
-  /// Derivative by the tangent of the next step.
+  /// Derivative by the tangent of the next step: the sum of each later pose's, times how that follows from the pose
+  /// after the step.
   ByTangent by_next_tangent() {
     const Eigen::Vector3d& tangent = path_.tangents[next_];
     const auto arc = arc_functions(tangent.z());
@@ -41,18 +52,13 @@ class RowsBySteps {
     const Eigen::Vector2d ahead = heading_ * Eigen::Vector2d(arc.cos_turn, arc.sin_turn);
     heading_ << ahead.x(), -ahead.y(), ahead.y(), ahead.x();
     ++next_;
-    ByTangent sum = ByTangent::Zero(rows_, 3);
-    for (const Looked& each : looked_) {
-      if (each.place >= next_) {
-        const Eigen::Matrix3d moved = transition(path_.poses[next_], path_.poses[each.place]) * world;
-        if constexpr (kRows == 3) {
-          sum += each.by_pose.template topRows<3>() * moved;
-        } else {
-          sum.middleRows(each.row, each.by_pose.rows()) += each.by_pose * moved;
-        }
-      }
+    for (; passed_ < looked_.size() && looked_[passed_].place < next_; ++passed_) {
+      pass(looked_[passed_], -1.0);
     }
-    return sum;
+    const Pose2& here = path_.poses[next_];
+    ByTangent by_here = ahead_;
+    by_here.col(2) += levers_ - ahead_.template leftCols<2>() * Eigen::Vector2d(-here.y, here.x);
+    return by_here * world;
   }
 
  private:
@@ -63,10 +69,20 @@ class RowsBySteps {
     RowsByPose by_pose;
   };
 
+  void pass(const Looked& each, double sign) {
+    const Pose2& pose = path_.poses[each.place];
+    ahead_.middleRows(each.row, each.by_pose.rows()) += sign * each.by_pose;
+    levers_.middleRows(each.row, each.by_pose.rows()) +=
+        sign * each.by_pose.template leftCols<2>() * Eigen::Vector2d(-pose.y, pose.x);
+  }
+
   const SegmentPath& path_;
   std::vector<Looked> looked_;
   Eigen::Index rows_ = 0;
   std::size_t next_ = 0;
+  std::size_t passed_ = 0;
+  ByTangent ahead_;                                                    ///< by poses that are still ahead, summed
+  Eigen::Matrix<double, kRows, 1, Eigen::ColMajor, kMost, 1> levers_;  ///< what their places add to it by a turn
   Eigen::Matrix2d heading_ = Eigen::Matrix2d::Identity();
 };
 
@@ -77,6 +93,18 @@ std::array<double, 3> motion_of(const ActuatorStep& step) {
   return {wheels, wheels, turn + distance / kStraightRadius};
 }
 
+/// Steps with which the pieces of a gyro begin, but for the first.
+std::vector<std::size_t> begun_pieces(const SegmentPath& path) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < path.sights.size(); ++i) {
+    const bool gyro = std::holds_alternative<YawRateSensor>(path.measured[i].sensor.kind);
+    for (std::size_t k = 1; gyro && std::cmp_less(k + 1, path.sights[i].stamps.size()); ++k) {
+      found.push_back(path.sights[i].at[k]);
+    }
+  }
+  return found;
+}
+
 /// Sums over the steps; `kRows` are three where one sensor sees all three, so that most segments cost no loops.
 template <int kRows>
 RowsCovariance summed_covariance(const SegmentPath& path, const MotionNoise& noise) {
@@ -85,7 +113,13 @@ RowsCovariance summed_covariance(const SegmentPath& path, const MotionNoise& noi
   using ByTangent = RowsBySteps<kRows>::ByTangent;
   Square covariance = Square::Zero(seen.rows(), seen.rows());
   ByTangent constant = ByTangent::Zero(seen.rows(), 3);  // column c: of a slip that is the same fraction all along
+  const std::vector<std::size_t> pieces = begun_pieces(path);  // from one to the next, where turns of each are measured
+  auto piece = pieces.begin();
   for (std::size_t k = 0; k < path.tangents.size(); ++k) {
+    for (; piece != pieces.end() && *piece == k; ++piece) {
+      covariance += constant * constant.transpose();
+      constant.setZero();
+    }
     const ByTangent by_tangent = seen.by_next_tangent();
     const std::array<double, 3> motion = motion_of(path.drive[k]);
     const double moving_time = motion[0] > 0.0 ? path.drive[k].duration : 0.0;

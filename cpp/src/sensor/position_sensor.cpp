@@ -1,113 +1,104 @@
 // SPDX-License-Identifier: Apache-2.0
-// Courses of chords.
+// Positions, laid on those of a fitted way.
 #include "slipwise/sensor/position_sensor.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "slipwise/lie/angle.hpp"
 #include "slipwise/sensor/sensor_motion.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kShortestChord = 0.05;  // [m] a shorter one that a model predicts has no course to speak of
+constexpr double kLeast = 0.1;      // of the noise of one position, or of a heading: no fit is known better
+constexpr double kTogether = 1e-6;  // [m^2] ways that have less in common have no angle to speak of
 
-using Positions = std::array<Eigen::Vector2d, kCoursePoints>;
-using ByPosition = std::array<Eigen::Matrix<double, 3, 2>, kCoursePoints>;
+Eigen::Vector2d left_of(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
 
-/// Of the sensor, seen from where its path begins.
-Positions positions(const View& view) {
-  Positions points;
-  for (std::size_t i = 0; i < kCoursePoints; ++i) {
-    const Pose2 seen = sensor_motion(view.robot[i], view.place);
-    points[i] = {seen.x, seen.y};
+Positions seen_positions(const View& view) {
+  Positions seen(2, static_cast<Eigen::Index>(view.robot.size()));
+  for (Eigen::Index i = 0; i < seen.cols(); ++i) {
+    const Pose2 there = sensor_motion(view.robot[static_cast<std::size_t>(i)], view.place);
+    seen.col(i) << there.x, there.y;
   }
-  return points;
+  return seen;
 }
 
-Eigen::Vector2d chord(const Positions& points, CoursePoint from, CoursePoint to) { return points[to] - points[from]; }
+/// Positions turned and moved to where they lie best on the fitted ones.
+struct Laid {
+  Eigen::Matrix2d turned;
+  Positions positions;
+  double together;
+};
 
-double course(const Eigen::Vector2d& along) { return std::atan2(along.y(), along.x()); }
-
-/// Derivative of the course by where the chord ends.
-Eigen::RowVector2d course_by_end(const Eigen::Vector2d& along) {
-  const double squared = std::max(along.squaredNorm(), kShortestChord * kShortestChord);
-  return Eigen::RowVector2d(-along.y(), along.x()) / squared;
+Laid laid(const PositionSensor& sensor, Positions positions) {
+  positions.colwise() -= centre_of(positions, sensor.weights);
+  const BestTurn turn = best_turn(positions, sensor.fitted, sensor.weights);
+  const Eigen::Matrix2d turned = rotation(turn.angle);
+  return {.turned = turned, .positions = turned * positions, .together = std::max(turn.together, kTogether)};
 }
 
-/// Of the chart (x, y, theta) of the end as seen from the start.
-ByPosition by_position(const Positions& points, const std::array<Chord, 2>& chords) {
-  const Eigen::Vector2d along = chord(points, kStartChord, kStart);
-  const Eigen::RowVector2d first = course_by_end(along);
-  const Eigen::RowVector2d second = course_by_end(chord(points, kEndChord, kEnd));
-  const Eigen::Matrix2d turned = rotation(-course(along) - chords[0].offset);
-  const Eigen::Vector2d moved = turned * chord(points, kStart, kEnd);
-  Eigen::Matrix<double, 3, 2> by_first;  // through the course at the start
-  by_first << moved.y() * first, -moved.x() * first, -first;
-  ByPosition by{-by_first, by_first, Eigen::Matrix<double, 3, 2>::Zero(), Eigen::Matrix<double, 3, 2>::Zero()};
-  by[kStart].topRows<2>() -= turned;
-  by[kEnd].topRows<2>() += turned;
-  by[kEnd].bottomRows<1>() += second;
-  by[kEndChord].bottomRows<1>() -= second;
-  return by;
+Eigen::Vector3d motion_of(const PositionSensor& sensor, const Laid& laid) {
+  const Positions apart = laid.positions - sensor.fitted;
+  return sensor.motion + sensor.gain * apart.reshaped();
 }
 
 }  // namespace
 
+Eigen::Vector2d centre_of(const Positions& positions, const OfPositions& weights) {
+  return positions * weights / weights.sum();
+}
+
+BestTurn best_turn(const Positions& from, const Positions& onto, const OfPositions& weights) {
+  double along = 0.0;
+  double across = 0.0;
+  for (Eigen::Index i = 0; i < from.cols(); ++i) {
+    along += weights[i] * from.col(i).dot(onto.col(i));
+    across += weights[i] * left_of(from.col(i)).dot(onto.col(i));
+  }
+  return {.angle = std::atan2(across, along), .together = std::hypot(along, across)};
+}
+
 Directions PositionSensor::directions() const {
-  return Eigen::Matrix<Eigen::Index, 3, 1>(kAlong, kAcross, kTurn).head(turn ? 3 : 2);
+  return Eigen::Matrix<Eigen::Index, 3, 1>(kAlong, kAcross, turn ? kTurn : kAcross);
 }
 
-Moments PositionSensor::moments(double start, double end) const {
-  return Eigen::Vector4d(chords[0].from, start, chords[1].from, end);
+Moments PositionSensor::moments(double /*start*/, double /*end*/) const { return at; }
+
+Eigen::Vector3d PositionSensor::motion_by(const Positions& positions) const {
+  return motion_of(*this, laid(*this, positions));
 }
 
+/// The gain does not see where all positions are moved to; as they turn by the best angle, it sees by `turning`.
 Seen PositionSensor::see(const View& view) const {
-  const Positions points = positions(view);
-  const Eigen::Index rows = turn ? 3 : 2;
-  const double first = course(chord(points, kStartChord, kStart)) + chords[0].offset;
-  const double second = course(chord(points, kEndChord, kEnd)) + chords[1].offset;
-  const Eigen::Vector2d moved = rotation(-first) * chord(points, kStart, kEnd);
-  const double near = turn ? view.measured[2] : 0.0;  // the measured turn, next to which the predicted one is unwrapped
-  const double turned = near + wrap_angle(second - first - near);
-  const ByPosition by = by_position(points, chords);
-  Seen seen{.z = Eigen::Vector3d(moved.x(), moved.y(), turned).head(rows),
-            .by_pose = {},
-            .by_place = RowsByPose::Zero(rows, 3)};
-  for (std::size_t i = 0; i < kCoursePoints; ++i) {
-    seen.by_pose[i] = by[i].topRows(rows) * sensor_by_robot(view.robot[i], view.place).topRows<2>();
-    seen.by_place += by[i].topRows(rows) * sensor_by_extrinsics(view.robot[i], view.place).topRows<2>();
+  const Laid now = laid(*this, seen_positions(view));
+  Eigen::Vector3d turning = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < now.positions.cols(); ++i) {
+    turning += gain.middleCols<2>(2 * i) * left_of(now.positions.col(i));
+  }
+  Seen seen{.z = motion_of(*this, now), .by_pose = {}, .by_place = RowsByPose::Zero(3, 3)};
+  for (Eigen::Index i = 0; i < now.positions.cols(); ++i) {
+    const auto place = static_cast<std::size_t>(i);
+    const Eigen::RowVector2d angle = left_of(fitted.col(i)).transpose() * (weights[i] / now.together);
+    const Eigen::Matrix<double, 3, 2> by_position = (gain.middleCols<2>(2 * i) - turning * angle) * now.turned;
+    const Pose2& robot = view.robot[place];
+    seen.by_pose[place] = by_position * sensor_by_robot(robot, view.place).topRows<2>();
+    seen.by_place += by_position * sensor_by_extrinsics(robot, view.place).topRows<2>();
   }
   seen.by_place.col(2).setZero();  // an antenna has no heading
   return seen;
 }
 
-RowsCovariance PositionSensor::noise(const View& view, const MotionNoise& noise) const {
-  ByPosition by = by_position(positions(view), chords);
-  for (const CoursePoint same : {kStart, kStartChord}) {
-    if (view.stamps[kEndChord] == view.stamps[same]) {  // one position, one error
-      by[same] += by[kEndChord];
-      by[kEndChord].setZero();
-    }
+RowsCovariance PositionSensor::noise(const View& /*view*/, const MotionNoise& noise) const {
+  const Eigen::Array3d least = kLeast * Eigen::Array3d(noise.pose_std_xy, noise.pose_std_xy, noise.pose_std_yaw);
+  Eigen::Matrix3d covariance = least.square().matrix().asDiagonal();
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    const auto by_mean = gain.middleCols<2>(2 * i);
+    covariance += by_mean * by_mean.transpose() / weights[i];
   }
-  // A course is no better a heading than a measured one. Without that, a segment with hardly any motion, whose chords
-  // are almost the same, would seem to measure their difference exactly.
-  MotionNoise headings = noise;
-  headings.pose_std_xy = 0.0;
-  Eigen::Matrix3d covariance = pose_noise_covariance({view.measured[0], view.measured[1], 0.0}, headings, std_ratio);
-  for (std::size_t i = 0; i < kCoursePoints; ++i) {
-    const double std = std_ratio[i < kEndChord ? 0 : 1].xy * noise.pose_std_xy;
-    covariance += std * std * by[i] * by[i].transpose();
-  }
-  const Eigen::Index rows = turn ? 3 : 2;
-  return covariance.topLeftCorner(rows, rows);
+  return covariance;
 }
 
-void PositionSensor::come_earlier(double seconds) {
-  for (Chord& each : chords) {
-    each.from -= seconds;
-  }
-}
+void PositionSensor::come_earlier(double seconds) { at.array() -= seconds; }
 
 }  // namespace slipwise

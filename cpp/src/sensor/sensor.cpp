@@ -90,8 +90,8 @@ Pose2 motion_of(const std::vector<Measured>& measured) {
 
 Eigen::Vector3d chart_of(const Directions& directions, const Rows& rows) {
   Eigen::Vector3d chart = Eigen::Vector3d::Zero();
-  for (Eigen::Index i = rows.size() - 1; i >= 0; --i) {  // of several, the first
-    chart[directions[i]] = rows[i];
+  for (Eigen::Index i = rows.size() - 1; i >= 0; --i) {  // of several ways the first, of several turns the sum
+    chart[directions[i]] = rows[i] + (directions[i] == kTurn ? chart[kTurn] : 0.0);
   }
   return chart;
 }
@@ -101,7 +101,7 @@ Eigen::Matrix3d chart_covariance(const Directions& directions, const RowsCovaria
   taken.setZero();
   Eigen::Vector3d unknown = Eigen::Vector3d::Ones();
   for (Eigen::Index i = 0; i < directions.size(); ++i) {
-    taken(directions[i], i) = unknown[directions[i]];
+    taken(directions[i], i) = directions[i] == kTurn ? 1.0 : unknown[directions[i]];
     unknown[directions[i]] = 0.0;
   }
   Eigen::Matrix3d chart = taken * covariance * taken.transpose();

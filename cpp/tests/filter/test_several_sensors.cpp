@@ -16,7 +16,8 @@ constexpr double kGyroStd = 1e-3;  // [rad]
 const std::vector<std::string> kSpeed{"V"}, kYaw{"w"};
 
 Measured by_gyro(double turn) {
-  return {.sensor = {.kind = YawRateSensor{.std = kGyroStd}}, .z = Rows::Constant(1, turn)};
+  return {.sensor = {.kind = YawRateSensor{RowsCovariance::Constant(1, 1, kGyroStd * kGyroStd)}},
+          .z = Rows::Constant(1, turn)};
 }
 
 Estimate learned(const MotionModel& model, const Estimate& prior, const InputHistory& inputs, const Segment& segment) {

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <variant>
 
 namespace slipwise {
 namespace {
@@ -34,6 +35,14 @@ TEST_CASE("a turn is the integral of the yaw rate, and unknown where samples are
   REQUIRE(turn);
   CHECK(turn->angle == doctest::Approx(0.1 * (3.07 * 3.07 - 1.03 * 1.03) + kBias * 2.04).epsilon(1e-9));
   CHECK(turn->std > 0.02 * 2.04);  // the bias is not known yet
+  const auto pieces = gyro.turns(1.03, 3.07, 3);
+  REQUIRE(pieces);
+  CHECK(pieces->z.sum() == doctest::Approx(turn->angle));
+  CHECK(pieces->z[2] == doctest::Approx(gyro.turn(2.39, 3.07)->angle));
+  const auto& covariance = std::get<YawRateSensor>(pieces->sensor.kind).covariance;
+  CHECK(covariance.sum() == doctest::Approx(turn->std * turn->std));
+  CHECK(covariance(0, 2) > 0.5 * covariance(0, 0));  // of an unknown bias
+  CHECK_FALSE(gyro.turns(1.0, 6.0, 3));
   CHECK_FALSE(gyro.turn(1.0, 6.0));
   CHECK_FALSE(gyro.turn(-1.0, 1.0));
   GyroBuffer broken;

@@ -84,4 +84,37 @@ TEST_CASE("poses of two frames make no segment; a short frame is one segment") {
   }
 }
 
+TEST_CASE("segments between positions are as long as positions need, and share none") {
+  struct Case {
+    double speed;
+    double noise;
+    std::size_t positions;
+  };
+  for (const Case& each : {Case{0.5, 1e-3, 50}, Case{5.0, 0.01, 50}, Case{30.0, 0.01, 25}, Case{30.0, 0.5, 50}}) {
+    CAPTURE(each.speed);
+    CAPTURE(each.noise);
+    InputBuffer inputs{0.5};
+    PoseTimer timer;
+    SegmentCutter cutter(1.0, SegmentRules{.of_positions = 5.0}, true);
+    for (int i = 0; i < 50; ++i) {
+      cutter.see_noise(each.noise);
+    }
+    std::vector<SegmentCut> cuts;
+    for (int i = 0; i < 160; ++i) {
+      const double t = 0.1 * i;
+      inputs.push({t, {each.speed, 0.0, 0.0}});
+      const auto timed = timer.push({.t = t, .x = each.speed * t, .y = 0.0, .yaw = 0.0, .position = true}, 2.5);
+      REQUIRE(timed);
+      for (SegmentCut& cut : cutter.push(*timed, inputs)) {
+        cuts.push_back(cut);
+      }
+    }
+    REQUIRE(cuts.size() == 150 / each.positions);
+    CHECK(cuts[0].positions.size() == each.positions);
+    CHECK(cuts[0].positions.front().t == 0.0);
+    CHECK(cuts[1].positions.front().t > cuts[0].positions.back().t);
+    CHECK(cuts[1].first.t == cuts[0].second.t);
+  }
+}
+
 }  // namespace slipwise

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sensors see along a path: poses, courses of its own chords, turns; derivatives, and the noise of what was
+// What sensors see along a path: poses, positions, turns; derivatives, and the noise of what was
 // measured.
 #include "slipwise/segment/sight.hpp"
 
@@ -29,27 +29,48 @@ PositionSensor& positions_of(Segment& segment) {
   return std::get<PositionSensor>(segment.measured.front().sensor.kind);
 }
 
-Measured turn_by_gyro() { return {.sensor = {.kind = YawRateSensor{.std = 0.02}}, .z = Rows::Zero(1)}; }
+Measured turns_by_gyro(Eigen::Index pieces) {
+  return {.sensor = {.kind = YawRateSensor{4e-4 * RowsCovariance::Identity(pieces, pieces)}}, .z = Rows::Zero(pieces)};
+}
+
+/// A gain that does not see where all positions are moved to, nor how they are turned.
+void set_gain(PositionSensor& sensor) {
+  const Eigen::Index size = 2 * sensor.fitted.cols();
+  Eigen::Matrix<double, Eigen::Dynamic, 3> unseen(size, 3);
+  for (Eigen::Index i = 0; i < sensor.fitted.cols(); ++i) {
+    unseen.middleRows<2>(2 * i) << 1.0, 0.0, -sensor.fitted(1, i), 0.0, 1.0, sensor.fitted(0, i);
+  }
+  Eigen::MatrixXd gain(3, size);
+  for (Eigen::Index i = 0; i < gain.size(); ++i) {
+    gain.reshaped()[i] = std::sin(1.7 * static_cast<double>(i) + 0.4);
+  }
+  sensor.gain = gain - gain * unseen * (unseen.transpose() * unseen).inverse() * unseen.transpose();
+}
 
 Segment between_positions() {
-  Segment segment{.start = 3.0131, .end = 5.0177};
-  segment.measured.front().sensor.kind =
-      PositionSensor{.chords = {Chord{.from = 2.1177, .offset = 0.0}, Chord{.from = 4.2093, .offset = 0.3}}};
+  Segment segment{.start = 2.1177, .end = 5.0177};
+  PositionSensor sensor{.motion = {1.0, 0.2, 0.4}};
+  sensor.at = Eigen::Vector<double, 5>(2.1177, 2.6131, 3.5093, 4.2093, 4.8113);
+  sensor.weights = 1e4 * Eigen::Vector<double, 5>(1.0, 2.0, 2.0, 0.5, 1.5);  // 1 cm and less
+  sensor.fitted = Positions::Zero(2, 5);
+  sensor.fitted << -1.2, -0.5, 0.1, 0.9, 1.6, -0.3, 0.0, 0.2, 0.1, -0.4;
+  sensor.fitted.colwise() -= centre_of(sensor.fitted, sensor.weights);
+  set_gain(sensor);
+  segment.measured.front().sensor.kind = sensor;
   return segment;
 }
 
-Segment by_gyro() {
+Segment by_gyro(Eigen::Index pieces = 1) {
   Segment segment = between_positions();
   positions_of(segment).turn = false;
-  segment.measured.front().z = Eigen::Vector2d::Zero();
-  segment.measured.push_back(turn_by_gyro());
+  segment.measured.push_back(turns_by_gyro(pieces));
   return segment;
 }
 
 /// A pose, and beside it what a gyro says, whose stamps are late.
-Segment pose_and_late_gyro() {
+Segment pose_and_late_gyro(Eigen::Index pieces = 1) {
   Segment segment{.start = 3.0131, .end = 5.0177};
-  segment.measured.push_back(turn_by_gyro());
+  segment.measured.push_back(turns_by_gyro(pieces));
   segment.measured.back().sensor.clock = 0.1117;
   return segment;
 }
@@ -71,18 +92,18 @@ double derivative_error(const MotionModel& model, const Eigen::VectorXd& paramet
 
 }  // namespace
 
-TEST_CASE("courses have the exact derivative by slip, by the drive, by clocks and by where the antenna sits") {
+TEST_CASE("ways have the exact derivative by slip, by the drive, by clocks and by where the antenna sits") {
   const Basis basis = named_basis("odd-even-10");
   const MotionModel model(basis, {.dynamics = true, .clock_offset = true, .response = true, .sensor_extrinsics = true});
   Eigen::VectorXd others(14);
   others << std::log(0.31), std::log(0.22), std::log(0.0827), std::log(0.1133), 0.93, 1.12, 0.21, 0.34, std::log(1.31),
       std::log(0.82), 0.0231, 0.3, -0.2, 0.0;
-  Segment overlapping = between_positions();
-  positions_of(overlapping).chords[1].from = 2.5113;  // before the segment's start
+  Segment late = between_positions();
+  late.measured.front().sensor.clock = 0.0713;
   for (const tests::SampleDrive& drive : tests::sample_drives()) {
     CAPTURE(drive.name);
     const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
-    for (const Segment& segment : {between_positions(), overlapping, by_gyro(), pose_and_late_gyro()}) {
+    for (const Segment& segment : {between_positions(), late, by_gyro(), by_gyro(4), pose_and_late_gyro(2)}) {
       CHECK(derivative_error(model, with_slip(basis, others), segment, inputs) < 1e-5);
       CHECK(linearize_slip(model, with_slip(basis, others), inputs, segment)
                 .by_parameter.isApprox(linearize_segment(model, with_slip(basis, others), inputs, segment)
@@ -99,25 +120,39 @@ TEST_CASE("what sensors see is made of where they are at fixed moments, each by 
   const MotionModel model(basis, {});
   const Eigen::VectorXd slip = tests::sample_slip(basis, 5);
   const auto seen_at = [&](double t) -> Eigen::Vector3d {
-    const Segment until{.start = 2.1177, .end = t, .measured = measured_pose({}, place)};
+    const Segment until{.start = 1.9, .end = t, .measured = measured_pose({}, place)};
     return integrate_segment(model, slip, inputs, until).rows();
   };
   Segment segment = between_positions();
   segment.measured.front().sensor.place = place;
-  segment.measured.push_back(turn_by_gyro());
+  segment.measured.push_back(turns_by_gyro(1));
   segment.measured.back().sensor.clock = 0.1117;
   const Rows found = integrate_segment(model, slip, inputs, segment).rows();
-  const auto chord = [&](double from, double to) -> Eigen::Vector2d { return (seen_at(to) - seen_at(from)).head<2>(); };
-  const Eigen::Vector2d first = seen_at(3.0131).head<2>();
-  const Eigen::Vector2d last = chord(4.2093, 5.0177);
+  const PositionSensor& sensor = positions_of(segment);
+  Positions there(2, sensor.at.size());
+  for (Eigen::Index i = 0; i < there.cols(); ++i) {
+    there.col(i) = seen_at(sensor.at[i]).head<2>();
+  }
   CHECK(found.size() == 4);
-  CHECK(found.head<2>().norm() == doctest::Approx(chord(3.0131, 5.0177).norm()));
-  const double turn = std::atan2(last.y(), last.x()) + 0.3 - std::atan2(first.y(), first.x());
-  CHECK(std::remainder(found[2] - turn, 6.283185307179586) == doctest::Approx(0.0).epsilon(1e-9));
-  CHECK(found[3] == doctest::Approx((seen_at(5.0177 - 0.1117) - seen_at(3.0131 - 0.1117)).z()));
+  CHECK(found.head<3>().isApprox(sensor.motion_by(there), 1e-9));
+  CHECK(found[3] == doctest::Approx((seen_at(5.0177 - 0.1117) - seen_at(2.1177 - 0.1117)).z()));
 }
 
-TEST_CASE("a side slip that is always the same does not move courses, and neither does how an antenna is turned") {
+TEST_CASE("positions tell the same motion wherever the way begins and heads, and the fitted ones that of the fit") {
+  const Segment segment = between_positions();
+  const PositionSensor& sensor = std::get<PositionSensor>(segment.measured.front().sensor.kind);
+  CHECK(sensor.motion_by(sensor.fitted).isApprox(sensor.motion, 1e-12));
+  Positions other = sensor.fitted;
+  other(0, 2) += 0.1;
+  other(1, 4) -= 0.2;
+  for (const double turn : {0.3, 2.9, -1.8}) {
+    Positions moved = rotation(turn) * other;
+    moved.colwise() += Eigen::Vector2d(5.0, -7.0);
+    CHECK(sensor.motion_by(moved).isApprox(sensor.motion_by(other), 1e-9));
+  }
+}
+
+TEST_CASE("a side slip that is always the same does not move ways, and neither does how an antenna is turned") {
   const Basis basis("crab", kSpeed, kSpeed, {});
   const MotionModel model(basis, {});
   const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
@@ -132,58 +167,71 @@ TEST_CASE("a side slip that is always the same does not move courses, and neithe
   CHECK((integrate_segment(model, straight, inputs, turned).rows() - wanted).norm() < 1e-9);
 }
 
-TEST_CASE("the noise of four positions is that of seeded draws, and of one error where two of them are one") {
-  const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
-  const MotionModel model(Basis("none", {}, {}, {}), {});
-  Segment joined = between_positions();
-  positions_of(joined).chords[1].from = joined.start;
+TEST_CASE("the noise of means of positions is that of seeded draws") {
+  const Segment segment = between_positions();
+  PositionSensor sensor = std::get<PositionSensor>(segment.measured.front().sensor.kind);
+  const MotionNoise noise{.pose_std_xy = 0.01, .pose_std_yaw = 1e-3};
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
-  for (const Segment& segment : {between_positions(), joined}) {
-    const SegmentPath path = integrate_segment(model, Eigen::VectorXd(0), inputs, segment);
-    const MotionNoise noise{.pose_std_xy = 0.01, .pose_std_yaw = 1e-3};
-    const Eigen::Vector3d truth = path.rows();
-    const Sight& sight = path.sights.front();
-    constexpr int kDraws = 20000;
-    Eigen::Matrix3d squares = 1e-6 * Eigen::Matrix3d::Identity() * kDraws;
-    for (int i = 0; i < kDraws; ++i) {
-      auto robot = sight.robot(path.poses);
-      for (Pose2& pose : robot) {
-        pose.x += 0.01 * normal(random);
-        pose.y += 0.01 * normal(random);
-      }
-      if (sight.at[kEndChord] == sight.at[kStart]) {
-        robot[kEndChord] = robot[kStart];
-      }
-      const View view{.robot = robot, .stamps = sight.stamps, .measured = truth};
-      const Eigen::Vector3d error = see(path.measured.front().sensor, view).z - truth;
-      squares += error * error.transpose();
+  constexpr int kDraws = 20000;
+  Eigen::Matrix3d squares =
+      Eigen::Vector3d(1e-6, 1e-6, 1e-8).asDiagonal();  // a tenth of one position's, of a heading's
+  squares *= kDraws;
+  for (int i = 0; i < kDraws; ++i) {
+    Positions drawn = sensor.fitted;
+    for (Eigen::Index k = 0; k < drawn.cols(); ++k) {
+      drawn.col(k) += 1.0 / std::sqrt(sensor.weights[k]) * Eigen::Vector2d(normal(random), normal(random));
     }
-    const Eigen::Matrix3d stated = path.measurement_noise(truth, noise);
-    const Eigen::Matrix3d sampled = squares / kDraws;
-    CHECK((sampled - stated).norm() < 0.05 * stated.norm());
+    const Eigen::Vector3d error = sensor.motion_by(drawn) - sensor.motion;
+    squares += error * error.transpose();
   }
+  const Eigen::Matrix3d stated = sensor.noise({}, noise);
+  CHECK((squares / kDraws - stated).norm() < 0.05 * stated.norm());
 }
 
-TEST_CASE("where a gyro measures, the turn is the robot's own with the gyro's noise, and the rest is of courses") {
+TEST_CASE("where a gyro measures, the turn is the robot's own with the gyro's noise, and the rest is of positions") {
   const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
   const MotionModel model(Basis("none", {}, {}, {}), {});
   const Eigen::VectorXd none(0);
   const SegmentPath path = integrate_segment(model, none, inputs, by_gyro());
   const Rows found = path.rows();
-  const Rows courses = integrate_segment(model, none, inputs, between_positions()).rows();
-  const Rows robot = integrate_segment(model, none, inputs, {.start = 3.0131, .end = 5.0177}).rows();
-  CHECK(found.head<2>().isApprox(courses.head<2>()));
-  CHECK(found[2] == doctest::Approx(robot[2]));
+  const Rows positions = integrate_segment(model, none, inputs, between_positions()).rows();
+  const Rows robot = integrate_segment(model, none, inputs, {.start = 2.1177, .end = 5.0177}).rows();
+  CHECK(found.head<3>().isApprox(positions));
+  CHECK(found[3] == doctest::Approx(robot[2]));
   const MotionNoise noise{.pose_std_xy = 0.01, .pose_std_yaw = 1e-3};
-  const Eigen::Matrix3d covariance = path.measurement_noise(found, noise);
-  CHECK(covariance(2, 2) == doctest::Approx(4e-4));
-  CHECK(covariance.block<2, 1>(0, 2).isZero(0.0));
+  const Eigen::Matrix4d covariance = path.measurement_noise(found, noise);
+  CHECK(covariance(3, 3) == doctest::Approx(4e-4));
+  CHECK(covariance.block<3, 1>(0, 3).isZero(0.0));
+  CHECK(chart_of(path.directions(), found).z() == found[3]);
   const MotionNoise turning{.psd_time = {0.0, 0.0, 1e-4}};
-  CHECK(slip_covariance(path, turning)(2, 2) == doctest::Approx(1e-4 * (5.0177 - 3.0131)).epsilon(0.01));
+  CHECK(slip_covariance(path, turning)(3, 3) == doctest::Approx(1e-4 * (5.0177 - 2.1177)).epsilon(0.01));
 }
 
-TEST_CASE("slip moves courses as it moves the path") {
+TEST_CASE("turns of a gyro are those of equal pieces, whose sum is the chart's") {
+  const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
+  const MotionModel model(Basis("none", {}, {}, {}), {});
+  const Eigen::VectorXd none(0);
+  const Segment pieces = by_gyro(4);
+  const SegmentPath path = integrate_segment(model, none, inputs, pieces);
+  const Rows found = path.rows();
+  const SegmentPath whole = integrate_segment(model, none, inputs, by_gyro());
+  REQUIRE(found.size() == 7);
+  const double quarter = 0.25 * (pieces.end - pieces.start);
+  const Segment second{.start = pieces.start + quarter, .end = pieces.start + 2.0 * quarter};
+  CHECK(found[4] == doctest::Approx(integrate_segment(model, none, inputs, second).rows()[2]));
+  CHECK(chart_of(path.directions(), found).isApprox(chart_of(whole.directions(), whole.rows())));
+  const MotionNoise noise{.psd_time = {0.0, 0.0, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 1e-3};
+  const RowsCovariance slip = slip_covariance(path, noise);
+  CHECK(slip.bottomRightCorner<4, 4>().isApprox(1e-4 * quarter * Eigen::Matrix4d::Identity(), 0.05));
+  const RowsCovariance constant = slip_covariance(path, MotionNoise{.fraction = {0.0, 0.0, 0.1}});
+  CHECK(constant(3, 4) == 0.0);  // the same fraction in each piece, another in the next
+  CHECK(constant(3, 3) > 0.0);
+  CHECK(chart_covariance(path.directions(), slip + path.measurement_noise(found, noise))(2, 2) ==
+        doctest::Approx(4e-4 * 4.0 + 1e-4 * 4.0 * quarter).epsilon(0.01));
+}
+
+TEST_CASE("slip moves ways as it moves the path") {
   const Basis basis("each", kSpeed, {}, kSpeed);
   const MotionModel model(basis, {});
   const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);

@@ -18,6 +18,7 @@ from slipwise.calibration.learner import Progress
 from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.mounts import mounts_of
 from slipwise.calibration.plain import baseline_predictor
+from slipwise.calibration.position_settings import for_positions
 from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of, student_of
 from slipwise.calibration.prepared_run import (
     PreparedRun,
@@ -185,6 +186,7 @@ def judged_content(
         range=_range(windows.drive),
         seconds=seconds,
         segments=segments,
+        positions=facts.positions,
     )
     return judged, model_content(learned, judged, origin)
 
@@ -242,6 +244,7 @@ def _by_estimator(settings: Settings, windows: WindowSet, progress: Progress | N
 
 def learning_windows(drive: tuple[PreparedRun, ...], input_name: str, settings: Settings) -> WindowSet:
     """Cut the windows to learn from: of the length in the settings, or whole frames that are shorter."""
+    settings = for_positions(settings) if has_course(run.run for run in drive) else settings
     rules = replace(settings.rules(), whole_frames=True)
     return collect_windows(drive, settings.segment_length(input_name), rules)
 

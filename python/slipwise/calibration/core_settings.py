@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from slipwise import _core
 from slipwise.calibration.coming import Coming
 from slipwise.calibration.learning_tables import AUTO_BASES
+from slipwise.calibration.position_settings import for_positions
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.source_tables import core_sources
 from slipwise.errors import SettingsError
@@ -37,7 +38,7 @@ def core_settings(  # noqa: PLR0913 - six things, each of its own sort
         settings: what to learn and how.
         input_name: "command" or "wheel".
         horizons: of the predictions that are held against what was measured [s].
-        coming: what will be measured. Courses of positions do not tell a side slip that is always the same.
+        coming: what will be measured. Positions do not tell a side slip that is always the same.
         remember: keep surfaces that were driven on, and recall them.
         car: what is taken of a car whose commands are throttle and steering, before it drives.
         wheelbase: of a robot that is commanded to steer [m]: lags act on its steering.
@@ -46,6 +47,7 @@ def core_settings(  # noqa: PLR0913 - six things, each of its own sort
         SettingsError: a basis or a term is unknown, a force is to be learned beside surfaces, or settings
             name a source that is not among them.
     """
+    settings = for_positions(settings) if coming.positions else settings
     core, hypotheses = _core.LearnerSettings(), _core.HypothesisSettings()
     from_commands = input_name == "command"
     stream = settings.rules().stream_settings(

@@ -13,6 +13,7 @@ from slipwise import _core
 from slipwise.calibration.judge import Judged
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import Posterior
+from slipwise.calibration.position_settings import RESIDUALS
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.shares import shares_of
 from slipwise.models import schema
@@ -32,6 +33,7 @@ class ModelFacts:
     range: schema.Range
     seconds: float  # of all segments learned
     segments: int
+    positions: bool = False  # only positions were measured
 
 
 def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema.ModelFile:
@@ -63,6 +65,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
             settings=facts.settings.model_dump(exclude_defaults=True),
             learned_seconds=facts.seconds,
             learned_segments=facts.segments,
+            residuals_per_segment=RESIDUALS if facts.positions else None,
         ),
         verdict=schema.VerdictSection(
             good=verdict.good,

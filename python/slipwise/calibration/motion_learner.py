@@ -23,6 +23,7 @@ from slipwise.calibration.measurements import Measurements
 from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.path_ahead import PathAhead
+from slipwise.calibration.position_settings import for_positions
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
@@ -88,6 +89,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
                 advice=f"leave out estimator: {AVERAGE!r} learns from one measurement at a time",
             )
         self._input = input
+        settings = for_positions(settings) if coming.positions else settings
         self._settings = for_ground(settings, slopes=coming.attitude, sideways=coming.sideways)
         self._wheelbase = wheelbase_of(self._settings) if wheelbase is None else wheelbase
         self._core = _core.MotionLearner(
@@ -239,6 +241,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             ),
             seconds=model.seconds,
             segments=model.segments,
+            positions=self._positions,
         )
         content = self._remembered(model_content(learned, judged, origin), learned)
         return model_of(content, Log(()), found), judged.judgement

@@ -6,9 +6,10 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise.calibration.learning_tables import AUTO_BASES
+from slipwise.calibration.position_settings import for_positions
 from slipwise.calibration.settings import Settings
 from slipwise.errors import LogError
-from slipwise.logs.log import Log
+from slipwise.logs.log import Log, has_course
 
 #: Bases with terms of gravity that `auto` averages too where roll and pitch were measured.
 SLOPE_BASES = ("odd-even-13", "drive-9")
@@ -54,8 +55,10 @@ def for_the_ground_of(log: Log, settings: Settings) -> Settings:
     With terms of gravity where it has an attitude or a known force, of sideways speed where the vehicle is
     known to drive so, or does.
 
-    Only the default list of `auto` is extended; bases that were chosen stay as they are.
+    Only the default list of `auto` is extended; bases that were chosen stay as they are. Positions without
+    headings are learned from in longer segments.
     """
+    settings = for_positions(settings) if has_course(log.runs) else settings
     return for_ground(
         settings, slopes=has_known_force(log) or has_attitude(log), sideways=drives_sideways(log)
     )

@@ -26,8 +26,8 @@ _MOST_NAMED = 5  # parameters that a sentence names
 _REFUSED = "Do not use this model:"
 _FOLLOWED = {"command": "commands", "wheel": "wheels"}
 POSITIONS_ONLY = (
-    "Only positions were measured: headings are the direction of the path, so heading errors are errors of "
-    "that direction, and a constant side slip cannot be seen."
+    "Only positions were measured: headings are those of the path fitted to them, which over 1 s says little "
+    "of turns, and a constant side slip cannot be seen."
 )
 YAW_RATES_ONLY = (
     "Only yaw rates were measured: slip is learned of turns alone, and predicted positions follow the inputs "

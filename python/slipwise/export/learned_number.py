@@ -68,7 +68,8 @@ class LearnedNumbers:
         guessed = np.array([not parameter.identifiable for parameter in model.vector.rows], dtype=bool)
         unlearned = np.where(guessed[:, None] | guessed, 0.0, model.covariance)
         self._unlearned = unlearned + np.diag(np.where(guessed, self._prior, 0.0))
-        self._windows = model.content.provenance.learned_segments
+        origin = model.content.provenance
+        self._residuals = origin.learned_segments * (origin.residuals_per_segment or 1.0)
         self._names = [parameter.name for parameter in model.vector.rows]
 
     def exactly(self, value: float) -> LearnedNumber:
@@ -93,13 +94,13 @@ class LearnedNumbers:
         return LearnedNumber(limit.value, np.zeros(len(self._prior)), limit.std**2)
 
     def variance(self, value: float, *, guessed: float) -> LearnedNumber:
-        """Return a learned variance: that of n windows is known to a fraction of sqrt(2/n).
+        """Return a learned variance: that of n residuals is known to a fraction of sqrt(2/n).
 
         Args:
             value: the variance, or what is in proportion to it.
             guessed: the fraction of it that the log says nothing about.
         """
-        spread = 2.0 / self._windows if self._windows > 0 else math.inf
+        spread = 2.0 / self._residuals if self._residuals > 0 else math.inf
         own = value**2 * spread if value else 0.0
         return LearnedNumber(value, np.zeros(len(self._prior)), own, guessed)
 

@@ -182,6 +182,7 @@ class Provenance(Section):
     settings: dict[str, object]
     learned_seconds: NotNegative  # amount of driving learned from [s]
     learned_segments: int
+    residuals_per_segment: Positive | None = None  # independent, behind each factor of noise; None: 1
     prior: LogReference | None = None  # the fleet that learning began with
 
 

@@ -70,6 +70,16 @@ def test_three_tenths_of_a_number_is_the_most_it_may_be_unsure(std: float, writt
     assert written or "is too uncertain" in why
 
 
+def test_a_variance_is_known_better_the_more_residuals_a_segment_shows() -> None:
+    content = make_model(WHEEL).content.model_dump(mode="json")
+    stds = []
+    for residuals in (None, 2.0):
+        origin = {**content["provenance"], "learned_segments": 16, "residuals_per_segment": residuals}
+        numbers = LearnedNumbers(Model(ModelFile.model_validate({**content, "provenance": origin})))
+        stds.append(numbers.std(numbers.variance(1.0, guessed=0.0)))
+    assert stds == pytest.approx([math.sqrt(2.0 / 16.0), math.sqrt(2.0 / 32.0)])
+
+
 def test_what_the_log_says_little_about_is_not_written_however_narrow_its_prior_is() -> None:
     model = changed(WHEEL, {"lon.V": {"std": 0.028, "prior_std": 0.03, "identifiable": False}})
     file = exported(model, "diff-drive")

@@ -2,6 +2,7 @@
 // Yaw rates of a gyro of late, the turns that they make, and the gyro's bias.
 #pragma once
 
+#include <Eigen/Core>
 #include <deque>
 #include <optional>
 
@@ -36,7 +37,9 @@ class GyroBuffer {
   void see_course(const MeasuredPose& position);
   /// The turn over [start, end] [s]; empty if samples are missing.
   std::optional<GyroTurn> turn(double start, double end) const;
-  /// Between positions it measures the turn in place of their courses.
+  /// The turns in so many equally long pieces of it; empty if samples are missing.
+  std::optional<Measured> turns(double start, double end, Eigen::Index pieces) const;
+  /// Between positions it measures how the robot turned, in a few pieces one after the other.
   void measure(Segment& segment) const;
   /// [rad/s], and its standard deviation.
   double bias() const { return bias_; }

@@ -76,6 +76,8 @@ class InputBuffer {
   Driven driven(double start, double end) const;
   /// The integrals over [start, end] [s], while inputs are known.
   HeldMotion held_motion(double start, double end) const;
+  /// What is held over [start, end] [s]: the first from `start` on, each until the next.
+  std::vector<InputSample> held(double start, double end) const;
   /// The motion over [start, end] [s] that the inputs held then make, T_start_end.
   Pose2 reckoned(double start, double end) const;
 

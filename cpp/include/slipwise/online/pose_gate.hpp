@@ -15,14 +15,8 @@
 
 namespace slipwise {
 
-/// A heading that is made of the course of a chord.
-struct ChordHeading {
-  double yaw;  ///< [rad], unwrapped along the frame
-  Chord chord;
-};
-
-/// A measured pose of the pose sensor, and what tilts the robot then; or a measured position, whose yaw is made of the
-/// course of its chord.
+/// A measured pose of the pose sensor, and what tilts the robot then; or a measured position, whose yaw is that of the
+/// inputs' way as it lies best on the positions of late.
 struct MeasuredPose {
   double t;    ///< [s]
   double x;    ///< [m]
@@ -37,7 +31,6 @@ struct MeasuredPose {
   PoseFix fix = PoseFix::Unknown;
   bool position = false;  ///< whether only the position was measured
   bool learned = true;    ///< otherwise it says where the robot is, and no segment lies across it
-  std::array<std::optional<ChordHeading>, 2> headings = {};  ///< of a position: the first in use, and another
 };
 
 /// What the gate makes of the poses.

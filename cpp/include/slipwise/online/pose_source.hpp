@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "slipwise/lie/se2.hpp"
-#include "slipwise/online/chord_finder.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_fix.hpp"
 #include "slipwise/online/pose_gate.hpp"
@@ -36,7 +35,6 @@ inline constexpr double kClocksApart = 0.5;
 struct PoseSource {
   SourceSettings settings;
   SegmentCutter cutter;
-  ChordFinder chords;
   PoseGate gate = {};
   PoseTimer timer = {};
   PoseAccuracies accuracies = {};

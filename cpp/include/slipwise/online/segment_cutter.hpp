@@ -12,6 +12,7 @@
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_fix.hpp"
 #include "slipwise/online/pose_gate.hpp"
+#include "slipwise/online/position_fit.hpp"
 #include "slipwise/online/rejection.hpp"
 #include "slipwise/segment/segment.hpp"
 
@@ -22,6 +23,7 @@ struct SegmentRules {
   double late_factor = 2.5;        ///< a pose after a gap of more than this many median intervals is late: never an end
   double length_tolerance = 0.05;  ///< a segment may be this fraction longer or shorter than asked for
   double still_speed = 0.02;       ///< [m/s, rad/s] a segment whose inputs never exceed this teaches nothing
+  double of_positions = 0.0;       ///< [s]; one between positions alone is so long, unless half of it tells as much
 };
 
 /// The median time between poses of late, taken again every 64 intervals.
@@ -77,6 +79,8 @@ struct SegmentCut {
   MeasuredPose first;
   MeasuredPose second;
   std::optional<Reason> rejected;
+  std::vector<MeasuredPose> positions = {};    ///< where only these are measured, from the first on, the last not
+  std::optional<FittedPositions> fitted = {};  ///< what they tell
 
   /// T_first_second, the yaw difference along the unwrapped yaw.
   Pose2 measured() const;
@@ -99,6 +103,8 @@ class SegmentCutter {
   std::vector<SegmentCut> push(const TimedPose& pose, const InputBuffer& inputs);
   /// No pose of the run follows.
   std::vector<SegmentCut> finish(const InputBuffer& inputs);
+  /// By what positions of a segment scatter [m].
+  void see_noise(double std) { noise_ += kNoiseGain * (std - noise_); }
   double length() const { return length_; }
   /// Stamp of the pose from which on the next segment may begin [s]; infinity where none came.
   double begins() const { return poses_.empty() ? std::numeric_limits<double>::infinity() : poses_.front().pose.t; }
@@ -109,10 +115,13 @@ class SegmentCutter {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.length_, self.rules_, self.whole_frames_, self.stride_, self.poses_, self.any_, self.unknown_since_);
+    a(self.length_, self.rules_, self.whole_frames_, self.stride_, self.poses_, self.any_, self.unknown_since_,
+      self.noise_);
   }
 
  private:
+  static constexpr double kNoiseGain = 0.2;
+
   void cut(double length, bool last, const InputBuffer& inputs, std::vector<SegmentCut>& out);
   /// The index of the first pose at `t` [s] or later.
   std::size_t first_from(double t) const;
@@ -120,6 +129,10 @@ class SegmentCutter {
   std::optional<Reason> problem(std::size_t end, const InputBuffer& inputs) const;
   std::size_t next_start(std::size_t end, std::optional<Reason> problem, const InputBuffer& inputs);
   void end_frame(const InputBuffer& inputs, std::vector<SegmentCut>& out);
+  /// Of the next segment [s].
+  double wanted() const;
+  bool tells_enough(double length, const InputBuffer& inputs) const;
+  std::vector<MeasuredPose> positions_until(std::size_t end) const;
 
   double length_ = 0.0;
   SegmentRules rules_;
@@ -128,6 +141,7 @@ class SegmentCutter {
   std::deque<TimedPose> poses_;          ///< of the frame, from the next segment's start on
   bool any_ = false;                     ///< whether the frame lost poses at its beginning already
   std::optional<double> unknown_since_;  ///< the next segment starts once the input is known again
+  double noise_ = 0.01;                  ///< of positions [m]
 };
 
 }  // namespace slipwise

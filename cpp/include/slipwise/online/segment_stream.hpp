@@ -14,7 +14,7 @@
 #include "slipwise/online/attitude_gate.hpp"
 #include "slipwise/online/body_rates.hpp"
 #include "slipwise/online/car_stream.hpp"
-#include "slipwise/online/chord_finder.hpp"
+#include "slipwise/online/course_finder.hpp"
 #include "slipwise/online/force_buffer.hpp"
 #include "slipwise/online/hold_times.hpp"
 #include "slipwise/online/input_buffer.hpp"
@@ -168,7 +168,7 @@ class SegmentStream {
       self.wheel_timer_, self.learned_, self.slip_);
     a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
       self.learned_last_);
-    a(self.chords_, self.position_last_, self.readings_, self.heading_, self.others_, self.turned_until_, self.turned_,
+    a(self.courses_, self.position_last_, self.readings_, self.heading_, self.others_, self.turned_until_, self.turned_,
       self.attitudes_, self.evidence_, self.forces_, self.steepest_);
   }
 
@@ -197,7 +197,8 @@ class SegmentStream {
   void emit_other(const PoseSource& source, const SegmentCut& cut, double known_at);
   void process_accepted(const GatedPoses& gated);
   void reject_gated(const GatedPoses& gated);
-  std::optional<TimedPose> headed(TimedPose timed, ChordFinder& chords) const;
+  bool head(TimedPose& timed, CourseFinder& courses) const;
+  std::vector<SegmentCut> fitted(std::vector<SegmentCut> cuts, const Pose2& place) const;
   void emit_learned(const std::vector<SegmentCut>& cuts);
   void emit_slip(const std::vector<SegmentCut>& cuts);
   void emit_twists(const std::vector<TwistStretch>& stretches);
@@ -215,7 +216,6 @@ class SegmentStream {
   const InputBuffer& given() const { return car_ && settings_.from_commands ? car_->given() : inputs(); }
   void set_actuator_state(Segment& segment) const;
   void set_turn(Segment& segment) const;
-  void set_course(Segment& segment, const SegmentCut& cut) const;
   MeasuredPose complete(const MeasuredPose& raw, PoseAccuracies& accuracies) const;
   void stand_on_ground(Segment& segment, bool foreseen) const;
   void reject(Stream stream, Reason reason, double t) { rejected_.push_back({stream, reason, t}); }
@@ -252,7 +252,7 @@ class SegmentStream {
   std::vector<Rejected> rejected_;
   long breaks_ = 0;           ///< times that poses were not learned from
   bool learned_last_ = true;  ///< whether the last pose was
-  ChordFinder chords_;
+  CourseFinder courses_;
   Readings readings_;
   bool position_last_ = false;               ///< whether the last pose was a position alone
   double heading_ = 0.0;                     ///< of the last pose that was accepted [rad]

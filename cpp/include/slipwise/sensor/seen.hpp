@@ -13,8 +13,8 @@
 
 namespace slipwise {
 
-inline constexpr std::size_t kMostMoments = 4;
-inline constexpr int kMostSensorRows = 3;
+inline constexpr std::size_t kMostMoments = 10;
+inline constexpr int kMostSensorRows = 4;
 
 /// Which of the learned sizes of noise a row has: that of the way along, of the way across, or of the turn.
 enum Direction : std::uint8_t { kAlong, kAcross, kTurn };

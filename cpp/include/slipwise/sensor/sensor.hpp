@@ -53,7 +53,7 @@ Directions directions_of(const std::vector<Measured>& measured);
 Rows noise_factors(const std::vector<Measured>& measured, const Eigen::Vector3d& scale);
 /// A motion that is measured by rows x, y and theta. \throws std::invalid_argument where there are others.
 Pose2 motion_of(const std::vector<Measured>& measured);
-/// The chart (x, y, theta) that rows tell of; nothing of a direction that no row has.
+/// The chart (x, y, theta) that rows tell of, its turn the sum of their turns; nothing of a direction that no row has.
 Eigen::Vector3d chart_of(const Directions& directions, const Rows& rows);
 /// And its covariance, 1 of a direction that no row has.
 Eigen::Matrix3d chart_covariance(const Directions& directions, const RowsCovariance& covariance);

@@ -7,13 +7,13 @@
 
 namespace slipwise {
 
-/// One row: the integral of the yaw rate from the start to the end of a segment [rad].
+/// A row for each of a few pieces of a segment that are equally long: the integral of the yaw rate over it [rad].
 struct YawRateSensor {
-  double std = 0.0;  ///< of the turn [rad]
+  RowsCovariance covariance = {};  ///< of the turns [rad^2]
 
-  static Directions directions();
-  static Moments moments(double start, double end);
-  static Seen see(const View& view);
+  Directions directions() const;
+  Moments moments(double start, double end) const;
+  Seen see(const View& view) const;
   RowsCovariance noise(const View& view, const MotionNoise& noise) const;
   static void come_earlier(double /*seconds*/) {}
 };

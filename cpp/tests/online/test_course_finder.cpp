@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions get headings from chords where the robot came along one, and none where it did not.
-#include "slipwise/online/chord_finder.hpp"
+// Positions get headings where the robot came along a way, and none where it did not.
+#include "slipwise/online/course_finder.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <vector>
 
 #include "slipwise/lie/angle.hpp"
 
@@ -18,10 +17,10 @@ namespace {
 struct Robot {
   Pose2 antenna = {};
   InputBuffer inputs{0.5};
-  ChordFinder finder{antenna};
+  CourseFinder finder{antenna};
   Pose2 pose = {};
   double t = 0.0;
-  std::vector<std::optional<MeasuredPose>> found = {};
+  std::optional<double> found = {};
 
   /// Drives at a body twist for some seconds, at 10 Hz; `moves` says which part of it the robot really does.
   void drive(double v, double omega, double seconds, double moves = 1.0) {
@@ -31,10 +30,10 @@ struct Robot {
       pose = compose(pose, exp(Eigen::Vector3d(v, 0.0, omega) * 0.1 * moves));
       t += 0.1;
       const Pose2 at = compose(pose, antenna);
-      found.push_back(finder.push({.t = t, .x = at.x, .y = at.y, .yaw = 0.0, .position = true}, inputs));
+      found = finder.push({.t = t, .x = at.x, .y = at.y, .yaw = 0.0, .position = true}, inputs);
     }
   }
-  double error() const { return wrap_angle(found.back()->yaw - pose.theta); }
+  double error() const { return wrap_angle(*found - pose.theta); }
 };
 
 }  // namespace
@@ -43,7 +42,7 @@ TEST_CASE("a robot that follows its inputs gets its own heading, forward, backwa
   for (const Pose2& antenna : {Pose2{}, Pose2{0.4, -0.2, 0.0}}) {
     Robot robot{.antenna = antenna};
     robot.drive(1.0, 0.0, 2.0);
-    REQUIRE(robot.found.back());
+    REQUIRE(robot.found);
     CHECK(robot.error() == doctest::Approx(0.0).epsilon(1e-9));
     robot.drive(1.0, 0.8, 2.0);
     CHECK(robot.error() == doctest::Approx(0.0).epsilon(1e-9));
@@ -52,39 +51,19 @@ TEST_CASE("a robot that follows its inputs gets its own heading, forward, backwa
   }
 }
 
-TEST_CASE("the shorter chord is long enough and the other one position longer") {
-  Robot robot;
-  robot.drive(0.5, 0.0, 4.0);
-  REQUIRE(robot.found.back());
-  const auto& [first, second] = robot.found.back()->headings;
-  REQUIRE(second);
-  CHECK(robot.t - first->chord.from == doctest::Approx(1.0).epsilon(0.11));
-  CHECK(first->chord.from - second->chord.from == doctest::Approx(0.1));
-}
-
-TEST_CASE("positions that are said to be poor need longer chords") {
-  Robot robot;
-  robot.drive(1.0, 0.0, 4.0);
-  const auto poor = robot.finder.push(
-      {.t = robot.t + 0.1, .x = robot.pose.x, .y = 0.0, .yaw = 0.0, .std = {.xy = 0.15}, .position = true},
-      robot.inputs);
-  REQUIRE(poor);
-  CHECK(robot.t - poor->headings[0]->chord.from == doctest::Approx(3.0).epsilon(0.07));
-}
-
 TEST_CASE("where the robot stands, spins its wheels or is moved, there is no heading") {
   Robot robot;
   robot.drive(0.0, 0.0, 3.0);
-  CHECK_FALSE(robot.found.back());
+  CHECK_FALSE(robot.found);
   robot.drive(1.0, 0.0, 3.0);
-  CHECK(robot.found.back());
-  robot.drive(0.0, 0.0, 6.0);  // a chord is forgotten after a while
-  CHECK_FALSE(robot.found.back());
-  robot.drive(1.0, 0.0, 3.0, 0.05);
-  CHECK_FALSE(robot.found.back());
+  CHECK(robot.found);
+  robot.drive(0.0, 0.0, 6.0);  // a way is forgotten after a while
+  CHECK_FALSE(robot.found);
+  robot.drive(1.0, 0.0, 4.0, 0.05);
+  CHECK_FALSE(robot.found);
   InputBuffer parked(0.5);
-  ChordFinder finder;
-  std::optional<MeasuredPose> towed;
+  CourseFinder finder;
+  std::optional<double> towed;
   for (int i = 0; i < 60; ++i) {
     parked.push({0.1 * i, {}});
     towed = finder.push({.t = 0.1 * i, .x = 0.1 * i, .y = 0.0, .yaw = 0.0, .position = true}, parked);
@@ -96,19 +75,37 @@ TEST_CASE("a robot that turned on the spot heads where its inputs turned it, and
   Robot robot;
   robot.drive(1.0, 0.0, 2.0);
   robot.drive(0.0, 1.0, 2.0);
-  REQUIRE(robot.found.back());
+  REQUIRE(robot.found);
   CHECK(robot.error() == doctest::Approx(0.0).epsilon(1e-9));
   robot.drive(0.6, 0.9, 20.0);
-  CHECK(robot.found.back()->yaw == doctest::Approx(robot.pose.theta).epsilon(1e-6));
-  CHECK(robot.found.back()->yaw > 2.0 * std::numbers::pi);
+  REQUIRE(robot.found);
+  CHECK(*robot.found == doctest::Approx(robot.pose.theta).epsilon(1e-6));
+  CHECK(*robot.found > 2.0 * std::numbers::pi);
 }
 
-TEST_CASE("no chord leads from one frame to another, or over inputs that are unknown") {
+TEST_CASE("a robot that turns where its inputs go straight heads as it turned, but for the last half metre") {
+  InputBuffer inputs(0.5);
+  CourseFinder finder;
+  Pose2 pose;
+  std::optional<double> before;
+  std::optional<double> found;
+  for (int i = 0; i < 60; ++i) {
+    inputs.push({0.1 * i, {2.0, 0.0, 0.0}});
+    before = found;
+    found = finder.push({.t = 0.1 * i, .x = pose.x, .y = pose.y, .yaw = 0.0, .position = true}, inputs);
+    pose = compose(pose, exp(Eigen::Vector3d(2.0, 0.0, 1.0) * 0.1));
+  }
+  REQUIRE(before);
+  CHECK(*found - *before == doctest::Approx(0.1).epsilon(1e-6));
+  CHECK(*found == doctest::Approx(5.9).epsilon(0.03));
+}
+
+TEST_CASE("no way leads from one frame to another, or over inputs that are unknown") {
   Robot robot;
   robot.drive(1.0, 0.0, 2.0);
   const MeasuredPose jumped{.t = robot.t + 0.1, .x = 50.0, .y = 0.0, .yaw = 0.0, .frame = 1, .position = true};
   CHECK_FALSE(robot.finder.push(jumped, robot.inputs));
-  ChordFinder finder;
+  CourseFinder finder;
   finder.push({.t = 0.0, .x = 0.0, .y = 0.0, .yaw = 0.0, .position = true}, robot.inputs);
   CHECK_FALSE(finder.push({.t = 4.5, .x = 4.5, .y = 0.0, .yaw = 0.0, .position = true}, robot.inputs));
 }
