@@ -156,6 +156,34 @@ void bind_batch(nb::module_& m) {
       "processor, with these threads and instructions, where gpu is None.");
 }
 
+template <typename Scalar>
+void bind_uncertain_batch(nb::module_& m) {
+  m.def(
+      "rollout_covariance",
+      [](const UncertainModel& model, const Commands<Scalar>& commands, const StartList& starts,
+         nb::ndarray<Scalar, nb::ndim<3>, nb::c_contig, nb::device::cpu> out, const std::vector<double>& growth,
+         unsigned threads) {
+        const nb::gil_scoped_release release;
+        rollout_covariance(model, batch_of<Scalar>(commands, starts), {out.data(), out.size()}, growth,
+                           {.threads = threads});
+      },
+      "model"_a, "commands"_a, "starts"_a, "out"_a, "growth"_a, "threads"_a,
+      "Fills out [6, K, N] with (xx, xy, yy, xt, yt, tt) of every pose, times the growth [K] of its period.");
+  m.def(
+      "sample_futures",
+      [](const UncertainModel& model, const Commands<Scalar>& commands, const StartList& starts, std::uint64_t seed,
+         nb::ndarray<Scalar, nb::ndim<4>, nb::c_contig, nb::device::cpu> out, unsigned threads) {
+        const std::size_t size = out.size() / 3;
+        Scalar* data = out.data();
+        const nb::gil_scoped_release release;
+        sample_futures(model, batch_of<Scalar>(commands, starts), seed,
+                       FutureOutputs<Scalar>{{data, size}, {data + size, size}, {data + 2 * size, size}},
+                       {.threads = threads});
+      },
+      "model"_a, "commands"_a, "starts"_a, "seed"_a, "out"_a, "threads"_a,
+      "Fills out [3, S, K, N] with poses drawn from the learned distribution.");
+}
+
 void bind_uncertain(nb::module_& m) {
   nb::class_<UncertainModel>(m, "UncertainModel", "A model with its parameters and how uncertain it is.")
       .def(
@@ -177,29 +205,6 @@ void bind_uncertain(nb::module_& m) {
           "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "inflation"_a, "disturbance"_a,
           "prior_std"_a, "period"_a, "ground"_a, "limits"_a.none(), "ahead"_a.none(), "sideways"_a,
           nb::keep_alive<1, 2>());
-  m.def(
-      "rollout_covariance",
-      [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts,
-         nb::ndarray<double, nb::ndim<3>, nb::c_contig, nb::device::cpu> out, const std::vector<double>& growth,
-         unsigned threads) {
-        const nb::gil_scoped_release release;
-        rollout_covariance(model, batch_of<double>(commands, starts), {out.data(), out.size()}, growth,
-                           {.threads = threads});
-      },
-      "model"_a, "commands"_a, "starts"_a, "out"_a, "growth"_a, "threads"_a,
-      "Fills out [6, K, N] with (xx, xy, yy, xt, yt, tt) of every pose, times the growth [K] of its period.");
-  m.def(
-      "sample_futures",
-      [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts, std::uint64_t seed,
-         nb::ndarray<double, nb::ndim<4>, nb::c_contig, nb::device::cpu> out, unsigned threads) {
-        const std::size_t size = out.size() / 3;
-        double* data = out.data();
-        const nb::gil_scoped_release release;
-        sample_futures(model, batch_of<double>(commands, starts), seed,
-                       {{data, size}, {data + size, size}, {data + 2 * size, size}}, {.threads = threads});
-      },
-      "model"_a, "commands"_a, "starts"_a, "seed"_a, "out"_a, "threads"_a,
-      "Fills out [3, S, K, N] with poses drawn from the learned distribution.");
 }
 
 }  // namespace
@@ -250,6 +255,8 @@ void bind_rollout(nb::module_& m) {
   bind_batch<float>(m);
   bind_batch<double>(m);
   bind_uncertain(m);
+  bind_uncertain_batch<float>(m);
+  bind_uncertain_batch<double>(m);
 }
 
 }  // namespace slipwise::bindings

@@ -45,11 +45,12 @@ LaneKernelOfLevel<Scalar> kernel() {
           Lanes<Level, Scalar>::kLanes};
 }
 
-UncertainKernels uncertain() {
-  constexpr std::size_t kLanes = Lanes<Unpaired<Level>, double>::kLanes;
-  const auto limit = limit_block<Unpaired<Level>, double>;
-  return {.tangents = {roll_tangents<Level, double>, limit, nullptr, kLanes},
-          .futures = {roll_futures<Level, double>, limit, nullptr, kLanes}};
+template <typename Scalar>
+UncertainKernels<Scalar> uncertain() {
+  constexpr std::size_t kLanes = Lanes<Unpaired<Level>, Scalar>::kLanes;
+  const auto limit = limit_block<Unpaired<Level>, Scalar>;
+  return {.tangents = {roll_tangents<Level, Scalar>, limit, nullptr, kLanes},
+          .futures = {roll_futures<Level, Scalar>, limit, nullptr, kLanes}};
 }
 
 }  // namespace
@@ -61,11 +62,13 @@ UncertainKernels uncertain() {
 
 LaneKernelOfLevel<float> avx512_kernel(float /*scalar*/) { return kernel<float>(); }
 LaneKernelOfLevel<double> avx512_kernel(double /*scalar*/) { return kernel<double>(); }
-UncertainKernels avx512_uncertain() { return uncertain(); }
+UncertainKernels<float> avx512_uncertain(float /*scalar*/) { return uncertain<float>(); }
+UncertainKernels<double> avx512_uncertain(double /*scalar*/) { return uncertain<double>(); }
 #else
 LaneKernelOfLevel<float> avx512_kernel(float /*scalar*/) { return {nullptr, nullptr, nullptr, 0}; }
 LaneKernelOfLevel<double> avx512_kernel(double /*scalar*/) { return {nullptr, nullptr, nullptr, 0}; }
-UncertainKernels avx512_uncertain() { return {}; }
+UncertainKernels<float> avx512_uncertain(float /*scalar*/) { return {}; }
+UncertainKernels<double> avx512_uncertain(double /*scalar*/) { return {}; }
 #endif
 
 }  // namespace slipwise

@@ -20,6 +20,14 @@ struct Level {
   static constexpr bool kSingleLoop = true;  ///< a loop of its own without an actuator: measured, here it is faster
 };
 
+template <typename Scalar>
+UncertainKernels<Scalar> uncertain() {
+  constexpr std::size_t kLanes = Lanes<Unpaired<Level>, Scalar>::kLanes;
+  const auto limit = limit_block<Unpaired<Level>, Scalar>;
+  return {.tangents = {roll_tangents<Level, Scalar>, limit, nullptr, kLanes},
+          .futures = {roll_futures<Level, Scalar>, limit, nullptr, kLanes}};
+}
+
 }  // namespace
 
 LaneKernelOfLevel<float> portable_kernel(float /*scalar*/) {
@@ -30,11 +38,7 @@ LaneKernelOfLevel<double> portable_kernel(double /*scalar*/) {
           Lanes<Level, double>::kLanes};
 }
 
-UncertainKernels portable_uncertain() {
-  constexpr std::size_t kLanes = Lanes<Unpaired<Level>, double>::kLanes;
-  const auto limit = limit_block<Unpaired<Level>, double>;
-  return {.tangents = {roll_tangents<Level, double>, limit, nullptr, kLanes},
-          .futures = {roll_futures<Level, double>, limit, nullptr, kLanes}};
-}
+UncertainKernels<float> portable_uncertain(float /*scalar*/) { return uncertain<float>(); }
+UncertainKernels<double> portable_uncertain(double /*scalar*/) { return uncertain<double>(); }
 
 }  // namespace slipwise

@@ -42,19 +42,24 @@ RolloutProgram moved(const UncertainModel& model, Eigen::VectorXd parameters, co
   return {model.model, parameters, setting};
 }
 
-LaneNoise<double> lane_noise(const MotionNoise& noise, const Eigen::Vector3d& widened) {
-  LaneNoise<double> lanes{.psd_time = {},
+template <typename Scalar>
+LaneNoise<Scalar> lane_noise(const MotionNoise& noise, const Eigen::Vector3d& widened) {
+  const auto number = [](double value) { return static_cast<Scalar>(value); };
+  LaneNoise<Scalar> lanes{.psd_time = {},
                           .psd_motion = {},
                           .fraction = {},
-                          .turn_radius = kTurnRadius,
-                          .per_straight_radius = 1.0 / kStraightRadius};
+                          .turn_radius = number(kTurnRadius),
+                          .per_straight_radius = number(1.0 / kStraightRadius)};
   for (std::size_t c = 0; c < noise.fraction.size(); ++c) {
     const double variance = widened[static_cast<Eigen::Index>(c)];
-    lanes.psd_time[c] = variance * noise.psd_time[c];
-    lanes.psd_motion[c] = variance * noise.psd_motion[c];
-    lanes.fraction[c] = std::sqrt(variance) * noise.fraction[c];
+    lanes.psd_time[c] = number(variance * noise.psd_time[c]);
+    lanes.psd_motion[c] = number(variance * noise.psd_motion[c]);
+    lanes.fraction[c] = number(std::sqrt(variance) * noise.fraction[c]);
   }
   return lanes;
 }
+
+template LaneNoise<float> lane_noise<float>(const MotionNoise&, const Eigen::Vector3d&);
+template LaneNoise<double> lane_noise<double>(const MotionNoise&, const Eigen::Vector3d&);
 
 }  // namespace slipwise

@@ -19,22 +19,24 @@ namespace slipwise {
 namespace {
 
 constexpr std::size_t kEntries = 6;
-constexpr std::size_t kOfLine = kLineBytes / sizeof(double);
 
 /// A line of the processor's cache: a vector that lies across two of them is read twice.
+template <typename Scalar>
 struct alignas(kLineBytes) Line {
-  std::array<double, kOfLine> numbers{};
+  static constexpr std::size_t kNumbers = kLineBytes / sizeof(Scalar);
+  std::array<Scalar, kNumbers> numbers{};
 };
 
 /// Blocks of a batch with their tangents, one thread's.
+template <typename Scalar>
 class TangentBlocks {
  public:
-  TangentBlocks(const TangentPlan& plan, const RolloutBatch<double>& batch, const LaneKernelOfLevel<double>& kernel,
-                std::span<double> out)
+  TangentBlocks(const TangentPlan<Scalar>& plan, const RolloutBatch<Scalar>& batch,
+                const LaneKernelOfLevel<Scalar>& kernel, std::span<Scalar> out)
       : start_(plan.actuator_places().size()),
         tangents_(plan.lanes()),
-        state_((2 * tangent_rows(tangents_) * kernel.lanes + kOfLine - 1) / kOfLine),
-        job_(job_of(plan.program(), batch, RolloutOutputs<double>{})),
+        state_((2 * tangent_rows(tangents_) * kernel.lanes + Line<Scalar>::kNumbers - 1) / Line<Scalar>::kNumbers),
+        job_(job_of(plan.program(), batch, RolloutOutputs<Scalar>{})),
         place_(plan.program(), batch, nullptr, kernel, with_tangents(out)) {
     if (!start_.empty()) {
       place_.differentiate({&plan.actuator(), plan.actuator_places(), start_.data()});
@@ -45,7 +47,7 @@ class TangentBlocks {
   unsigned roll(std::size_t block) { return place_.roll(block); }
 
  private:
-  const LaneJob<double>& with_tangents(std::span<double> out) {
+  const LaneJob<Scalar>& with_tangents(std::span<Scalar> out) {
     tangents_.start = start_.data();
     tangents_.state = state_.front().numbers.data();  // there always are rows of noise
     tangents_.out = out.data();
@@ -53,19 +55,33 @@ class TangentBlocks {
     return job_;
   }
 
-  std::vector<StartTangent<double>> start_;
-  LaneTangents<double> tangents_;
-  std::vector<Line> state_;
-  LaneJob<double> job_;
-  BlockOfBatch<double> place_;
+  std::vector<StartTangent<Scalar>> start_;
+  LaneTangents<Scalar> tangents_;
+  std::vector<Line<Scalar>> state_;
+  LaneJob<Scalar> job_;
+  BlockOfBatch<Scalar> place_;
 };
+
+/// The starts at the origin: covariances are the same anywhere, and there the fewest digits are lost.
+std::vector<RolloutStart> at_origin(std::span<const RolloutStart> starts) {
+  std::vector<RolloutStart> found(starts.begin(), starts.end());
+  for (RolloutStart& start : found) {
+    start.pose.x = start.pose.y = 0.0;
+  }
+  return found;
+}
 
 }  // namespace
 
-void rollout_covariance(const UncertainModel& model, const RolloutBatch<double>& batch, std::span<double> out,
-                        std::span<const double> growth, const RolloutOptions& options) {
+template <typename Scalar>
+void rollout_covariance(const UncertainModel& model, const RolloutBatch<Scalar>& given,
+                        std::span<std::type_identity_t<Scalar>> out, std::span<const double> growth,
+                        const RolloutOptions& options) {
   check_uncertainty(model);
-  check_batch(batch);
+  check_batch(given);
+  const std::vector<RolloutStart> starts = at_origin(given.starts);
+  RolloutBatch<Scalar> batch = given;
+  batch.starts = starts;
   const std::size_t poses = batch.rollouts * batch.periods;
   if (out.size() != kEntries * poses) {
     throw std::invalid_argument("the covariances of " + std::to_string(poses) + " poses are " +
@@ -76,21 +92,26 @@ void rollout_covariance(const UncertainModel& model, const RolloutBatch<double>&
     throw std::invalid_argument("the covariances of " + std::to_string(batch.periods) + " periods grow by " +
                                 std::to_string(growth.size()) + " factors; give one for each, or none");
   }
-  const TangentPlan plan(model, batch.periods, growth);
+  const TangentPlan<Scalar> plan(model, batch.periods, growth);
   check_axes(plan.program(), batch);
-  const LaneKernelOfLevel<double> kernel = uncertain_kernels_of(options.level).tangents;
+  const LaneKernelOfLevel<Scalar> kernel = uncertain_kernels_of<Scalar>(options.level).tangents;
   std::atomic<unsigned> faults = kNoFault;
   share_out((batch.rollouts + kernel.lanes - 1) / kernel.lanes, options.threads,
             [&](std::size_t block, std::size_t last) {
-              TangentBlocks blocks(plan, batch, kernel, out);
+              TangentBlocks<Scalar> blocks(plan, batch, kernel, out);
               for (; block < last; ++block) {
                 faults |= blocks.roll(block);
               }
             });
-  check_commands(batch, faults == kNoFault ? first_unused(job_of(plan.program(), batch, RolloutOutputs<double>{})) : 0);
+  check_commands(batch, faults == kNoFault ? first_unused(job_of(plan.program(), batch, RolloutOutputs<Scalar>{})) : 0);
   if (faults != kNoFault) {
     refuse(faults);
   }
 }
+
+template void rollout_covariance<float>(const UncertainModel&, const RolloutBatch<float>&, std::span<float>,
+                                        std::span<const double>, const RolloutOptions&);
+template void rollout_covariance<double>(const UncertainModel&, const RolloutBatch<double>&, std::span<double>,
+                                         std::span<const double>, const RolloutOptions&);
 
 }  // namespace slipwise

@@ -68,25 +68,27 @@ Eigen::MatrixXd draw_ahead(const UncertainModel& model, std::size_t sample, std:
 }
 
 /// The numbers of futures that all samples share.
+template <typename Scalar>
 class FutureNumbers {
  public:
   FutureNumbers(const UncertainModel& model, double period)
       : terms_(disturbed_terms_of(model)), law_(model.uncertainty.disturbance) {
     const ModelUncertainty& uncertainty = model.uncertainty;
-    numbers_.noise = lane_noise(uncertainty.noise, uncertainty.inflation * uncertainty.scale);
+    numbers_.noise = lane_noise<Scalar>(uncertainty.noise, uncertainty.inflation * uncertainty.scale);
     numbers_.disturbed = static_cast<std::size_t>(terms_.size());
     for (std::size_t i = 0; i < numbers_.disturbed; ++i) {
       numbers_.channel[i] = static_cast<std::size_t>(terms_.channels[i]);
       numbers_.of_turn[i] = terms_.of_turn[i];
     }
     for (const SlipDisturbance& candidate : law_.candidates) {
-      deviations_.emplace_back((uncertainty.inflation * terms_.variances(candidate)).cwiseSqrt());
-      kept_.push_back(std::exp(-period / candidate.time_constant));
+      deviations_.emplace_back(
+          (uncertainty.inflation * terms_.variances(candidate)).cwiseSqrt().template cast<Scalar>());
+      kept_.push_back(static_cast<Scalar>(std::exp(-period / candidate.time_constant)));
     }
   }
 
   /// Those of some rollouts of one sample, of which each has random numbers of its own.
-  LaneFutures<double>& of(std::uint64_t seed, std::uint64_t sample, std::size_t first, std::size_t count) {
+  LaneFutures<Scalar>& of(std::uint64_t seed, std::uint64_t sample, std::size_t first, std::size_t count) {
     for (std::size_t lane = 0; lane < count; ++lane) {
       SplitMix random(seed, sample, first + lane);
       for (auto& row : numbers_.seeds) {
@@ -117,9 +119,9 @@ class FutureNumbers {
 
   DisturbedTerms terms_;
   const DisturbanceModel& law_;
-  std::vector<Eigen::VectorXd> deviations_;  ///< of each candidate
-  std::vector<double> kept_;
-  LaneFutures<double> numbers_{};
+  std::vector<Eigen::VectorX<Scalar>> deviations_;  ///< of each candidate
+  std::vector<Scalar> kept_;
+  LaneFutures<Scalar> numbers_{};
 };
 
 }  // namespace
@@ -140,8 +142,9 @@ Eigen::MatrixXd draw_parameters(const UncertainModel& model, std::size_t samples
   return drawn;
 }
 
-void sample_futures(const UncertainModel& model, const RolloutBatch<double>& batch, std::uint64_t seed,
-                    const FutureOutputs& outputs, const RolloutOptions& options) {
+template <typename Scalar>
+void sample_futures(const UncertainModel& model, const RolloutBatch<Scalar>& batch, std::uint64_t seed,
+                    const FutureOutputs<Scalar>& outputs, const RolloutOptions& options) {
   const std::size_t poses = batch.rollouts * batch.periods;
   const std::size_t samples = poses > 0 ? outputs.x.size() / poses : 0;
   if (poses > 0 && (samples == 0 || outputs.x.size() != samples * poses || outputs.y.size() != outputs.x.size() ||
@@ -151,21 +154,21 @@ void sample_futures(const UncertainModel& model, const RolloutBatch<double>& bat
   }
   check_batch(batch);
   const Eigen::MatrixXd parameters = draw_parameters(model, samples, seed);
-  const LaneKernelOfLevel<double> kernel = uncertain_kernels_of(options.level).futures;
+  const LaneKernelOfLevel<Scalar> kernel = uncertain_kernels_of<Scalar>(options.level).futures;
   std::atomic<unsigned> faults = kNoFault;
   share_out(samples, options.threads, [&](std::size_t first, std::size_t last) {
-    FutureNumbers numbers(model, model.setting.period);
+    FutureNumbers<Scalar> numbers(model, model.setting.period);
     for (std::size_t s = first; s < last; ++s) {
       const RolloutProgram program =
           moved(model, parameters.col(static_cast<Eigen::Index>(s)), draw_ahead(model, s, seed));
       check_axes(program, batch);
-      RolloutOutputs<double> paths;
+      RolloutOutputs<Scalar> paths;
       paths.x = &outputs.x[s * poses];
       paths.y = &outputs.y[s * poses];
       paths.theta = &outputs.theta[s * poses];
-      LaneJob<double> job = job_of(program, batch, paths);
+      LaneJob<Scalar> job = job_of(program, batch, paths);
       job.futures = &numbers.of(seed, s, 0, 0);
-      BlockOfBatch<double> place(program, batch, nullptr, kernel, job);
+      BlockOfBatch<Scalar> place(program, batch, nullptr, kernel, job);
       for (std::size_t n = 0; n < batch.rollouts; n += kernel.lanes) {
         numbers.of(seed, s, n, std::min(kernel.lanes, batch.rollouts - n));
         faults |= place.roll(n / kernel.lanes);
@@ -177,5 +180,10 @@ void sample_futures(const UncertainModel& model, const RolloutBatch<double>& bat
     refuse(faults);
   }
 }
+
+template void sample_futures<float>(const UncertainModel&, const RolloutBatch<float>&, std::uint64_t,
+                                    const FutureOutputs<float>&, const RolloutOptions&);
+template void sample_futures<double>(const UncertainModel&, const RolloutBatch<double>&, std::uint64_t,
+                                     const FutureOutputs<double>&, const RolloutOptions&);
 
 }  // namespace slipwise

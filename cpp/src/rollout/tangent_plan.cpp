@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace slipwise {
 namespace {
@@ -85,15 +86,17 @@ bool hangs_on(const ChannelTimingOf<ActuatorDual>& channel, int place) {
                              [&](const ActuatorDual* number) { return number->by[place] != 0.0; });
 }
 
-LaneLag<double> derivative_of(const LaneLag<ActuatorDual>& lag, int place) {
-  return {lag.mean_by_input.by[place], lag.mean_by_fast.by[place], lag.mean_by_slow.by[place],
-          lag.fast_by_input.by[place], lag.fast_by_fast.by[place], lag.slow_by_input.by[place],
-          lag.slow_by_slow.by[place]};
+template <typename Scalar>
+LaneLag<Scalar> derivative_of(const LaneLag<ActuatorDual>& lag, int place) {
+  const auto by = [place](const ActuatorDual& number) { return static_cast<Scalar>(number.by[place]); };
+  return {by(lag.mean_by_input), by(lag.mean_by_fast),  by(lag.mean_by_slow), by(lag.fast_by_input),
+          by(lag.fast_by_fast),  by(lag.slow_by_input), by(lag.slow_by_slow)};
 }
 
 }  // namespace
 
-TangentPlan::TangentPlan(const UncertainModel& model, std::size_t periods, std::span<const double> growth)
+template <typename Scalar>
+TangentPlan<Scalar>::TangentPlan(const UncertainModel& model, std::size_t periods, std::span<const double> growth)
     : program_(model.model, off_boundaries(model), model.setting),
       actuator_(
           schedule_actuator(differentiable_numbers(model.model, off_boundaries(model)), program_.actuator().period)),
@@ -103,11 +106,12 @@ TangentPlan::TangentPlan(const UncertainModel& model, std::size_t periods, std::
   add_slip(model);
   add_disturbance(model, periods);
   for (std::size_t k = 0; k < periods; ++k) {
-    inflation_.push_back(model.uncertainty.inflation * (growth.empty() ? 1.0 : growth[k]));
+    inflation_.push_back(static_cast<Scalar>(model.uncertainty.inflation * (growth.empty() ? 1.0 : growth[k])));
   }
 }
 
-void TangentPlan::add_actuator(const UncertainModel& model) {
+template <typename Scalar>
+void TangentPlan<Scalar>::add_actuator(const UncertainModel& model) {
   for (Eigen::Index i = 0; i < model.model.actuator_size(); ++i) {
     const Eigen::Index at = model.model.slip_size() + i;
     if (model.uncertainty.covariance(at, at) > 0.0) {
@@ -123,13 +127,15 @@ void TangentPlan::add_actuator(const UncertainModel& model) {
   for (const PeriodPartOf<ActuatorDual>& part : parts) {
     const auto v = lane_lag(part.v, actuator_.v.response), omega = lane_lag(part.omega, actuator_.omega.response);
     for (const int place : actuator_places_) {
-      parts_.push_back({part.duration.by[place], derivative_of(v, place), derivative_of(omega, place)});
+      parts_.push_back({static_cast<Scalar>(part.duration.by[place]), derivative_of<Scalar>(v, place),
+                        derivative_of<Scalar>(omega, place)});
     }
   }
 }
 
 /// Columns that may turn the robot come first.
-void TangentPlan::add_slip(const UncertainModel& model) {
+template <typename Scalar>
+void TangentPlan<Scalar>::add_slip(const UncertainModel& model) {
   const MotionModel& motion = model.model;
   const Eigen::MatrixXd& learned = model.uncertainty.covariance;
   const DisturbedTerms terms = disturbed_terms_of(model);
@@ -162,7 +168,9 @@ void TangentPlan::add_slip(const UncertainModel& model) {
 }
 
 /// A direction [slip, stretches] of the slip; one stretch stands for all.
-void TangentPlan::add_column(const MotionModel& model, Eigen::Index parameter, const Eigen::MatrixXd& by_stretch) {
+template <typename Scalar>
+void TangentPlan<Scalar>::add_column(const MotionModel& model, Eigen::Index parameter,
+                                     const Eigen::MatrixXd& by_stretch) {
   const RolloutSetting& setting = program_.setting();
   Column column{.parameter = parameter, .entries = {}, .turns = setting.on_grade() || !setting.ahead.empty()};
   for (Eigen::Index k = 0; k < by_stretch.cols(); ++k) {
@@ -175,7 +183,7 @@ void TangentPlan::add_column(const MotionModel& model, Eigen::Index parameter, c
       for (std::size_t channel = 0; channel < 3; ++channel) {
         if (const double rate = program.products[product].fraction[channel]; rate != 0.0) {
           column.entries.push_back({static_cast<std::uint8_t>(product), static_cast<std::uint8_t>(channel),
-                                    static_cast<std::uint8_t>(k), rate});
+                                    static_cast<std::uint8_t>(k), static_cast<Scalar>(rate)});
           column.turns = column.turns || channel == 2;
         }
       }
@@ -184,20 +192,22 @@ void TangentPlan::add_column(const MotionModel& model, Eigen::Index parameter, c
   columns_.push_back(std::move(column));
 }
 
-void TangentPlan::add_factor(const Eigen::MatrixXd& covariance) {
+template <typename Scalar>
+void TangentPlan<Scalar>::add_factor(const Eigen::MatrixXd& covariance) {
   const Eigen::MatrixXd root = triangular_root(covariance);
   constexpr auto kTogether = static_cast<Eigen::Index>(kColumnsTogether);
   for (Eigen::Index first = 0; first < root.cols(); first += kTogether) {
     for (Eigen::Index row = first; row < root.rows(); ++row) {
       for (Eigen::Index column = first; column < first + kTogether; ++column) {
-        factor_.push_back(column < root.cols() ? root(row, column) : 0.0);
+        factor_.push_back(static_cast<Scalar>(column < root.cols() ? root(row, column) : 0.0));
       }
     }
   }
 }
 
 /// The slip disturbance acts on the pose after some time as its mean over that time does.
-void TangentPlan::add_disturbance(const UncertainModel& model, std::size_t periods) {
+template <typename Scalar>
+void TangentPlan<Scalar>::add_disturbance(const UncertainModel& model, std::size_t periods) {
   const DisturbedTerms terms = disturbed_terms_of(model);
   for (const Eigen::Index place : terms.places) {
     const auto found = std::ranges::find(columns_, place, &Column::parameter) - columns_.begin();
@@ -206,11 +216,13 @@ void TangentPlan::add_disturbance(const UncertainModel& model, std::size_t perio
   for (std::size_t k = 1; k <= periods && terms.size() > 0; ++k) {
     const double seconds = static_cast<double>(k) * model.setting.period;
     const Eigen::VectorXd variances = nominal_variances(model.uncertainty.disturbance, terms, seconds);
-    disturbance_.insert(disturbance_.end(), variances.begin(), variances.end());
+    std::ranges::transform(variances, std::back_inserter(disturbance_),
+                           [](double variance) { return static_cast<Scalar>(variance); });
   }
 }
 
-LaneTangents<double> TangentPlan::lanes() const {
+template <typename Scalar>
+LaneTangents<Scalar> TangentPlan<Scalar>::lanes() const {
   return {.columns = actuator_places_.size() + columns_.size(),
           .actuator = actuator_places_.size(),
           .turning = turning_,
@@ -223,11 +235,14 @@ LaneTangents<double> TangentPlan::lanes() const {
           .disturbed_count = disturbed_.size(),
           .disturbed = disturbed_.data(),
           .disturbance = disturbance_.data(),
-          .noise = lane_noise(noise_),
-          .root = {root_[0], root_[1], root_[2]},
+          .noise = lane_noise<Scalar>(noise_),
+          .root = {static_cast<Scalar>(root_[0]), static_cast<Scalar>(root_[1]), static_cast<Scalar>(root_[2])},
           .inflation = inflation_.data(),
           .state = nullptr,
           .out = nullptr};
 }
+
+template class TangentPlan<float>;
+template class TangentPlan<double>;
 
 }  // namespace slipwise

@@ -90,6 +90,23 @@ TEST_CASE("without noise the parameters' fraction is exact") {
   }
 }
 
+TEST_CASE("covariances in float lose no digits far from the origin") {
+  const std::vector<RolloutStart> far{{{.x = 4e5, .y = 5e6, .theta = 0.3}, {0.4, 0.2}}};
+  const tests::SampleChain actuator = tests::sample_chains()[3];
+  const MotionModel model(named_basis("odd-even-10"), actuator.learned);
+  const UncertainModel uncertain = sample_model(model, actuator);
+  const std::size_t poses = std::size_t{4} * 60;
+  std::vector<double> wanted(6 * poses);
+  std::vector<float> found(6 * poses);
+  rollout_covariance(uncertain, tests::SampleCommands<double>(4, 60, kPeriod).batch(far), wanted);
+  rollout_covariance(uncertain, tests::SampleCommands<float>(4, 60, kPeriod).batch(far), found);
+  const std::vector<double> in_double(found.begin(), found.end());
+  for (std::size_t i = 0; i < poses; ++i) {
+    const Eigen::Matrix3d expected = matrix_at(wanted, poses, i);
+    CHECK((matrix_at(in_double, poses, i) - expected).norm() < 1e-4 * expected.norm());
+  }
+}
+
 TEST_CASE("sampled futures scatter as the covariance says, from the same seed in the same way") {
   const std::size_t samples = 2000;
   const tests::SampleCommands<double> commands(2, 30, kPeriod);

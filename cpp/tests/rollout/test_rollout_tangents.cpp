@@ -150,6 +150,9 @@ void check(const Basis& basis, const tests::SampleChain& actuator, const Situati
   }
   const auto batch =
       commands.batch(starts, situation.past ? std::span<const DriveCommand>(past) : std::span<const DriveCommand>());
+  tests::SampleCommands<float> few_digits(kRollouts, kPeriods, kPeriod);
+  few_digits = sideways ? few_digits.sideways() : few_digits;
+  const RolloutBatch<float> with_few_digits = few_digits.batch(batch.starts, batch.past);
   const std::vector<double> wanted = differences(beside, batch);
   const bool beside_them = beside.parameters != parameters;
   for (const InstructionLevel level : kInstructionLevels) {
@@ -158,6 +161,9 @@ void check(const Basis& basis, const tests::SampleChain& actuator, const Situati
       rollout_covariance(uncertain, batch, found, {}, {.threads = 1, .level = level});
       CAPTURE(name_of(level));
       CHECK(difference_between(found, wanted) < (beside_them ? 3e-2 : 1e-5));
+      std::vector<float> in_float(6 * kPoses);
+      rollout_covariance(uncertain, with_few_digits, in_float, {}, {.threads = 1, .level = level});
+      CHECK(difference_between({in_float.begin(), in_float.end()}, found) < 1e-3);  // 1e-4 without edges
     }
   }
 }

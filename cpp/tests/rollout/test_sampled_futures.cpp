@@ -54,6 +54,21 @@ TEST_CASE("a model that is sure drives its one path in every sample") {
   }
 }
 
+TEST_CASE("futures in float are those in double, from the same random numbers") {
+  UncertainModel model = sample(0.05);
+  model.uncertainty.noise = {
+      .psd_time = {1e-4, 1e-4, 1e-4}, .psd_motion = {1e-3, 1e-3, 1e-3}, .fraction = {0.1, 0.1, 0.1}};
+  const Futures wanted = draw(model, 5, 7);
+  const tests::SampleCommands<float> commands(kRollouts, kPeriods, 0.1);
+  std::vector<float> x(wanted.x.size()), y(x.size()), theta(x.size());
+  sample_futures(model, commands.batch(kStart), 7, {x, y, theta});
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    CHECK(std::abs(static_cast<double>(x[i]) - wanted.x[i]) < 1e-5);
+    CHECK(std::abs(static_cast<double>(y[i]) - wanted.y[i]) < 1e-5);
+    CHECK(std::abs(static_cast<double>(theta[i]) - wanted.theta[i]) < 1e-5);
+  }
+}
+
 TEST_CASE("a seed fixes the bytes at any number of threads; another seed gives others") {
   UncertainModel model = sample(0.05);
   model.uncertainty.noise.psd_motion = {1e-3, 1e-3, 1e-3};

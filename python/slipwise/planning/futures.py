@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike
 
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.models.axes import drive_axes
 from slipwise.models.car import drawn_cars
 from slipwise.models.model import Model
-from slipwise.planning.rollout import check_threads, checked_commands, uncertain
+from slipwise.planning.rollout import Numbers, check_threads, checked_commands, uncertain
 from slipwise.planning.start import Start
 from slipwise.planning.throttle import behind_curves, reach_of
 
@@ -25,7 +25,8 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
     seed: int,
     start: Start | None = None,
     threads: int = 1,
-) -> NDArray[np.float64]:
+    dtype: DTypeLike | None = None,
+) -> Numbers:
     """Draw S samples of every rollout: x, y [m] and yaw [rad] after each period, [3, S, K, N].
 
     A sample drives all commands with parameters of its own; each of its rollouts has slip noise of its own.
@@ -40,12 +41,13 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
         seed: where the random numbers start, at least 0.
         start: where the rollouts start; by default at rest in the origin.
         threads: the results are the same bytes for any number.
+        dtype: float32 or float64; by default that of the commands.
 
     Raises:
         ModelError: the model does not remember a surface ahead.
         SettingsError: as for `rollout`, and when there is no sample or the seed is negative.
     """
-    numbers = np.asarray(checked_commands(model, commands, np.float64))
+    numbers = checked_commands(model, commands, dtype)
     check_threads(threads)
     if samples < 1 or seed < 0:
         raise SettingsError(
@@ -60,7 +62,7 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
         cars = [*drawn_cars(model.table, deviations, samples, seed)]
     results = []
     for k, car in enumerate(cars):
-        result = np.empty((3, samples // len(cars), periods, rollouts))
+        result = np.empty((3, samples // len(cars), periods, rollouts), numbers.dtype)
         twists, driven = behind_curves(model, numbers, dt, begin, threads, car)
         try:
             widened = uncertain(model, dt, driven, dt * periods)

@@ -34,7 +34,7 @@ class Rollouts:
     path: Numbers | None = None  # [3, K, N] x, y [m], yaw [rad, not wrapped] at the end of each period
     end: Numbers | None = None  # [3, N] the same at the end of the last period
     costs: Numbers | None = None  # [3, N] sum, highest and lowest value of the map at the periods' ends
-    covariance: NDArray[np.float64] | None = None  # [6, K, N] xx, xy, yy, xt, yt, tt of x, y, yaw
+    covariance: Numbers | None = None  # [6, K, N] xx, xy, yy, xt, yt, tt of x, y, yaw
 
     def __repr__(self) -> str:
         parts = {f.name: getattr(self, f.name) for f in fields(self)}
@@ -81,8 +81,9 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         outputs: of "path", "end" and "costs".
         costmap: what "costs" are sampled from.
         covariance: also the covariance of every pose from parameters and slip noise, grown as held-out
-            predictions needed. It costs as much as ten to twenty rollouts; derivatives are exact where the
-            path has them. At a speed of zero they are the mean of both directions'.
+            predictions needed. It costs as much as ten to twenty rollouts of its type;
+            derivatives are exact where the path has them. At a speed of zero they are the mean of both
+            directions'.
         threads: the results are the same bytes for any number.
         dtype: float32 or float64; by default that of the commands.
         out: results of an earlier call of the same shape and dtype, whose arrays are filled again.
@@ -207,14 +208,14 @@ def _covariance(  # noqa: PLR0913  (of one rollout)
     start: Start,
     threads: int,
     of_curves: NDArray[np.float64] | None,
-) -> NDArray[np.float64]:
+) -> Numbers:
     rollouts, periods = commands.shape[:2]
-    result: NDArray[np.float64] = np.empty((6, periods, rollouts))
+    result: Numbers = np.empty((6, periods, rollouts), commands.dtype)
     unit = uncertain(model, dt, start, dt)
     starts = start.in_core(rollouts, drive_axes(model))
     at_one_period = student_at(model, dt).inflation
     growth = [student_at(model, dt * (k + 1)).inflation / at_one_period for k in range(periods)]
-    _core.rollout_covariance(unit, commands.astype(np.float64, copy=False), starts, result, growth, threads)
+    _core.rollout_covariance(unit, commands, starts, result, growth, threads)
     if of_curves is not None:
         result += of_curves
     return result

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "slipwise/linear/plain_value.hpp"
 
@@ -13,10 +14,21 @@
 // NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
-/// A value and its derivatives by N variables (forward differentiation). `Number` is a double, or a vector of them;
-/// as one of these, a dual number holds nothing until it is given something.
+/// What a vector is made of.
+template <class Number>
+struct ElementOf {
+  using Type = std::remove_cvref_t<decltype(std::declval<Number&>()[0])>;
+};
+template <>
+struct ElementOf<double> {
+  using Type = double;
+};
+
+/// A value and its derivatives by N variables (forward differentiation). `Number` is a double, or a vector of floats or
+/// doubles; as one of these, a dual number holds nothing until it is given something.
 template <class Number, int N>
 struct Dual {
+  using Constant = ElementOf<Number>::Type;
   Number value;
   Number by[N];
 
@@ -26,7 +38,7 @@ struct Dual {
   /// The variable number `place`, whose derivative by what is asked for is `rate`.
   static SLIPWISE_DUAL Dual variable(const Number& v, int place, double rate = 1.0) {
     Dual dual(v);
-    dual.by[place] = Number{} + rate;
+    dual.by[place] = Number{} + static_cast<Constant>(rate);
     return dual;
   }
   /// A function of `a` alone with this value and this derivative by it.
@@ -68,19 +80,19 @@ struct Dual {
   }
 
   // With a constant, which has no derivatives.
-  friend SLIPWISE_DUAL Dual operator-(const Dual& a) { return a * -1.0; }
-  friend SLIPWISE_DUAL Dual operator+(Dual a, double b) {
+  friend SLIPWISE_DUAL Dual operator-(const Dual& a) { return a * static_cast<Constant>(-1); }
+  friend SLIPWISE_DUAL Dual operator+(Dual a, Constant b) {
     a.value = a.value + b;
     return a;
   }
-  friend SLIPWISE_DUAL Dual operator-(Dual a, double b) {
+  friend SLIPWISE_DUAL Dual operator-(Dual a, Constant b) {
     a.value = a.value - b;
     return a;
   }
-  friend SLIPWISE_DUAL Dual operator+(double a, const Dual& b) { return b + a; }
-  friend SLIPWISE_DUAL Dual operator-(double a, const Dual& b) { return -b + a; }
-  friend SLIPWISE_DUAL Dual operator*(const Dual& a, double b) { return chained(a.value * b, Number{} + b, a); }
-  friend SLIPWISE_DUAL Dual operator*(double a, const Dual& b) { return b * a; }
+  friend SLIPWISE_DUAL Dual operator+(Constant a, const Dual& b) { return b + a; }
+  friend SLIPWISE_DUAL Dual operator-(Constant a, const Dual& b) { return -b + a; }
+  friend SLIPWISE_DUAL Dual operator*(const Dual& a, Constant b) { return chained(a.value * b, Number{} + b, a); }
+  friend SLIPWISE_DUAL Dual operator*(Constant a, const Dual& b) { return b * a; }
 };
 
 template <int N>

@@ -120,10 +120,11 @@ inline bool hangs_on_commands(const ActuatorSchedule& actuator) {
 }
 
 /// Where the derivatives of the drives at the start go: by these of the actuator's parameters.
+template <typename Scalar>
 struct StartDerivatives {
   const ActuatorScheduleOf<ActuatorDual>* actuator = nullptr;  ///< null where none are wanted
   std::span<const int> places = {};
-  StartTangent<double>* rows = nullptr;  ///< [places]
+  StartTangent<Scalar>* rows = nullptr;  ///< [places]
 };
 
 /// Moves the block to its place in the batch. What all lanes fraction is set once.
@@ -147,7 +148,7 @@ class BlockOfBatch {
   }
 
   /// Where derivatives of the starts go.
-  void differentiate(const StartDerivatives& derivatives) {
+  void differentiate(const StartDerivatives<Scalar>& derivatives) {
     derivatives_ = derivatives;
     set_lanes(0, kMostLanes, 0);
   }
@@ -269,9 +270,9 @@ class BlockOfBatch {
       for (const auto* channel : {&drives.v, &drives.omega, &drives.vy}) {
         auto& by = derivatives_.rows[i].by[c++];
         for (std::size_t lane = first; lane < last; ++lane) {
-          by[0][lane] = channel->commanded.by[place];
-          by[1][lane] = channel->fast.by[place];
-          by[2][lane] = channel->slow.by[place];
+          by[0][lane] = static_cast<Scalar>(channel->commanded.by[place]);
+          by[1][lane] = static_cast<Scalar>(channel->fast.by[place]);
+          by[2][lane] = static_cast<Scalar>(channel->slow.by[place]);
         }
       }
     }
@@ -305,7 +306,7 @@ class BlockOfBatch {
   const RolloutBatch<Scalar>& batch_;
   const Costmap* map_;
   std::size_t lanes_;
-  StartDerivatives derivatives_{};
+  StartDerivatives<Scalar> derivatives_{};
   LaneBlock<Scalar> block_{};
   bool many_;  ///< starts
   bool each_;  ///< lane differs

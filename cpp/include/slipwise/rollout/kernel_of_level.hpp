@@ -33,15 +33,16 @@ LaneKernelOfLevel<Scalar> kernel_of(InstructionLevel level) {
 
 /// Those of tangents and of futures.
 /// \throws std::invalid_argument where the processor lacks the level.
-inline UncertainKernels uncertain_kernels_of(InstructionLevel level) {
+template <typename Scalar>
+UncertainKernels<Scalar> uncertain_kernels_of(InstructionLevel level) {
   check_level(level);
-  UncertainKernels kernels{};
+  UncertainKernels<Scalar> kernels{};
   if (level == InstructionLevel::Avx512) {
-    kernels = avx512_uncertain();
+    kernels = avx512_uncertain(Scalar{});
   } else if (level == InstructionLevel::Avx2) {
-    kernels = avx2_uncertain();
+    kernels = avx2_uncertain(Scalar{});
   }
-  return kernels.tangents.roll != nullptr ? kernels : portable_uncertain();
+  return kernels.tangents.roll != nullptr ? kernels : portable_uncertain(Scalar{});
 }
 
 }  // namespace slipwise

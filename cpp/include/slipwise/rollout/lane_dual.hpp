@@ -20,7 +20,8 @@ struct DualLanes {
 /// At zero the mean of the derivatives on both sides.
 template <class Vector, int N>
 SLIPWISE_LANES Dual<Vector, N> magnitude(const Dual<Vector, N>& a) {
-  return Dual<Vector, N>::chained(magnitude(a.value), sign(a.value, Vector{} + 1.0), a);
+  return Dual<Vector, N>::chained(magnitude(a.value), sign(a.value, Vector{} + static_cast<ElementOf<Vector>::Type>(1)),
+                                  a);
 }
 template <class Vector, int N>
 SLIPWISE_LANES Dual<Vector, N> sign(const Dual<Vector, N>& a, const Dual<Vector, N>& one) {

@@ -100,10 +100,10 @@ class NoisyRide : public OutputLanes<L> {
   SLIPWISE_LANES void draw_three(Floats* normal) {
     if (spares_) {
       normal[0] = spare_;
-      normal_.next_two(normal[1], normal[2]);
+      normal_.next_two_floats(normal[1], normal[2]);
     } else {
-      normal_.next_two(normal[0], normal[1]);
-      normal_.next_two(normal[2], spare_);
+      normal_.next_two_floats(normal[0], normal[1]);
+      normal_.next_two_floats(normal[2], spare_);
     }
     spares_ = !spares_;
   }

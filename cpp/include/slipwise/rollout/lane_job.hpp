@@ -224,12 +224,16 @@ LaneKernelOfLevel<float> avx512_kernel(float);
 LaneKernelOfLevel<double> avx512_kernel(double);
 
 /// Kernels whose blocks are rolled out with tangents, or with drawn noise; they drive no cars.
+template <typename Scalar>
 struct UncertainKernels {
-  LaneKernelOfLevel<double> tangents, futures;
+  LaneKernelOfLevel<Scalar> tangents, futures;
 };
-UncertainKernels portable_uncertain();
-UncertainKernels avx2_uncertain();
-UncertainKernels avx512_uncertain();
+UncertainKernels<float> portable_uncertain(float);
+UncertainKernels<double> portable_uncertain(double);
+UncertainKernels<float> avx2_uncertain(float);
+UncertainKernels<double> avx2_uncertain(double);
+UncertainKernels<float> avx512_uncertain(float);
+UncertainKernels<double> avx512_uncertain(double);
 
 }  // namespace slipwise
 // NOLINTEND(modernize-avoid-c-arrays)

@@ -79,12 +79,12 @@ class NormalLanes {
 
   SLIPWISE_LANES void next_two(Vector& one, Vector& other) {
     Floats first, second;
-    next_two(first, second);
+    next_two_floats(first, second);
     one = __builtin_convertvector(first, Vector);
     other = __builtin_convertvector(second, Vector);
   }
 
-  SLIPWISE_LANES void next_two(Floats& one, Floats& other) {
+  SLIPWISE_LANES void next_two_floats(Floats& one, Floats& other) {
     const Integers first = bits(), second = bits();
     // from 2^-24 to 1, and half a turn to each side
     const Floats uniform = __builtin_convertvector((first >> 8) & 0xFFFFFF, Floats) * 0x1p-24F + 0x1p-24F;

@@ -47,7 +47,8 @@ DisturbedTerms disturbed_terms_of(const UncertainModel& model);
 /// columns where it stays.
 RolloutProgram moved(const UncertainModel& model, Eigen::VectorXd parameters, const Eigen::MatrixXd& ahead);
 
-/// Slip noise as a kernel takes it, with variances widened by these factors.
-LaneNoise<double> lane_noise(const MotionNoise& noise, const Eigen::Vector3d& widened = {1.0, 1.0, 1.0});
+/// Slip noise as a kernel takes it, with variances widened by these factors. Float and double.
+template <typename Scalar>
+LaneNoise<Scalar> lane_noise(const MotionNoise& noise, const Eigen::Vector3d& widened = {1.0, 1.0, 1.0});
 
 }  // namespace slipwise

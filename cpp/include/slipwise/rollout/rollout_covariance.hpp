@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <type_traits>
 
 #include "slipwise/rollout/path_noise.hpp"
 
@@ -15,8 +16,10 @@ namespace slipwise {
 /// what a gain changes of the input that keeps the start's speed until the first command acts, not in ramps after it.
 /// \param growth what the covariances of each period grow by; of all by nothing where there are none.
 /// \throws std::invalid_argument as rollout_batch does, and when the uncertainty or the length of `out` or `growth`
-/// does not fit.
-void rollout_covariance(const UncertainModel& model, const RolloutBatch<double>& batch, std::span<double> out,
-                        std::span<const double> growth = {}, const RolloutOptions& options = {});
+/// does not fit. Float and double.
+template <typename Scalar>
+void rollout_covariance(const UncertainModel& model, const RolloutBatch<Scalar>& batch,
+                        std::span<std::type_identity_t<Scalar>> out, std::span<const double> growth = {},
+                        const RolloutOptions& options = {});
 
 }  // namespace slipwise

@@ -11,10 +11,11 @@
 namespace slipwise {
 
 /// Where the drawn poses go, [samples * periods * rollouts] each.
+template <typename Scalar>
 struct FutureOutputs {
-  std::span<double> x;      ///< [m]
-  std::span<double> y;      ///< [m]
-  std::span<double> theta;  ///< [rad], not wrapped
+  std::span<Scalar> x;      ///< [m]
+  std::span<Scalar> y;      ///< [m]
+  std::span<Scalar> theta;  ///< [rad], not wrapped
 };
 
 /// Parameters drawn from their distribution, [parameters, samples]; the inflation widens it.
@@ -22,9 +23,10 @@ Eigen::MatrixXd draw_parameters(const UncertainModel& model, std::size_t samples
 
 /// Each sample drives all commands with parameters of its own, and each of its rollouts has slip noise of its own. The
 /// learned factors of (x, y, theta) are taken as those of the forward, sideways and angular slip.
-/// The same seed gives the same bytes at any number of threads.
+/// The same seed gives the same bytes at any number of threads. Float and double, from the same random numbers.
 /// \throws std::invalid_argument as rollout_batch does, when there is no sample, or an output has the wrong length.
-void sample_futures(const UncertainModel& model, const RolloutBatch<double>& batch, std::uint64_t seed,
-                    const FutureOutputs& outputs, const RolloutOptions& options = {});
+template <typename Scalar>
+void sample_futures(const UncertainModel& model, const RolloutBatch<Scalar>& batch, std::uint64_t seed,
+                    const FutureOutputs<Scalar>& outputs, const RolloutOptions& options = {});
 
 }  // namespace slipwise

@@ -14,6 +14,8 @@
 
 namespace slipwise {
 
+/// Float and double.
+template <typename Scalar>
 class TangentPlan {
  public:
   /// For rollouts of so many periods; their covariances grow by one factor for each, or by none.
@@ -27,7 +29,7 @@ class TangentPlan {
   std::span<const int> actuator_places() const { return actuator_places_; }
 
   /// The numbers of a kernel, without where the start's derivatives, its state and its results are.
-  LaneTangents<double> lanes() const;
+  LaneTangents<Scalar> lanes() const;
 
  private:
   void add_actuator(const UncertainModel& model);
@@ -39,7 +41,7 @@ class TangentPlan {
   /// One column of slip: what it is, and how it changes the program.
   struct Column {
     Eigen::Index parameter;  ///< or kAhead
-    std::vector<TangentEntry<double>> entries;
+    std::vector<TangentEntry<Scalar>> entries;
     bool turns;
   };
   static constexpr Eigen::Index kAhead = -1;
@@ -47,13 +49,13 @@ class TangentPlan {
   RolloutProgram program_;
   ActuatorScheduleOf<ActuatorDual> actuator_;
   std::vector<int> actuator_places_;
-  std::vector<PartTangent<double>> parts_;
+  std::vector<PartTangent<Scalar>> parts_;
   std::vector<std::uint8_t> moved_;
   std::vector<Column> columns_;  ///< of slip
   std::size_t turning_ = 0;
   std::vector<std::size_t> first_entry_, disturbed_;
-  std::vector<TangentEntry<double>> entries_;
-  std::vector<double> factor_, disturbance_, inflation_;
+  std::vector<TangentEntry<Scalar>> entries_;
+  std::vector<Scalar> factor_, disturbance_, inflation_;
   MotionNoise noise_;
   Eigen::Vector3d root_;
 };
