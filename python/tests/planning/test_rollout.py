@@ -17,7 +17,7 @@ from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import SettingsError
 from slipwise.ground import Grade
 from slipwise.models import Model
-from slipwise.planning import Costmap, Start, command_buffer, rollout
+from slipwise.planning import Costmap, Start, command_buffer, rollout, sample_futures
 from slipwise.prediction import predict
 
 N, K, DT = 20, 30, 0.1
@@ -99,6 +99,24 @@ def test_covariance_is_that_of_a_prediction_without_pose_noise(
     _, expected = poses_of_predict(exact, commands, 3)
     rows, columns = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
     assert found[:, -1, 3] == pytest.approx(expected[-1][rows, columns], rel=0.05, abs=1e-5)
+
+
+def test_uncertainty_in_float_is_that_in_double(model: Model, commands: NDArray[np.float64]) -> None:
+    start = Start(pose=(4e5, 5e6, 0.3), past=np.zeros((20, 2)))
+    single, double = (
+        rollout(model, commands, DT, start=start, covariance=True, dtype=dtype).covariance
+        for dtype in (np.float32, np.float64)
+    )
+    assert single is not None
+    assert double is not None
+    assert (single.dtype, double.dtype) == (np.float32, np.float64)
+    assert np.abs(single - double).max() < 1e-4 * np.abs(double).max()
+    few = commands[:4].astype(np.float32)
+    drawn = sample_futures(model, few, DT, samples=3, seed=1)
+    assert drawn.dtype == np.float32
+    assert drawn == pytest.approx(
+        sample_futures(model, few, DT, samples=3, seed=1, dtype=np.float64), abs=1e-4
+    )
 
 
 def test_every_instruction_level_gives_the_same_poses(model: Model, commands: NDArray[np.float64]) -> None:
