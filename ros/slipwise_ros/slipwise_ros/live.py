@@ -7,7 +7,6 @@ Deactivated, it keeps what it learned; cleanup forgets all but the cache.
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
 import sys
@@ -157,8 +156,14 @@ def main() -> None:
     """Run the node until it is interrupted."""
     rclpy.init()
     node = SlipwiseNode()
-    with contextlib.suppress(KeyboardInterrupt, ExternalShutdownException):
+    try:
         rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except Exception:
+        if rclpy.ok():
+            raise
+        # an interrupt shut the middleware down amid a call, which then fails
     _leave(node)
 
 

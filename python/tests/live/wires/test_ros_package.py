@@ -64,9 +64,10 @@ def slipwise_ros(python: Path, arguments: list[str]) -> Iterator[subprocess.Pope
 
 
 def ended(node: subprocess.Popen[str]) -> tuple[int, str]:
-    """Return the exit code of an interrupted node, and where its threads stand if it does not end."""
+    """Return the exit code of an interrupted node; what it said too, if that is wrong or it does not end."""
     try:
-        return node.wait(30.0), ""
+        code = node.wait(30.0)
+        return code, node.stderr.read() if code and node.stderr else ""
     except subprocess.TimeoutExpired:
         node.send_signal(signal.SIGABRT)
         return node.wait(10.0), node.stderr.read() if node.stderr else ""
