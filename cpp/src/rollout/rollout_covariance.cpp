@@ -74,14 +74,14 @@ std::vector<RolloutStart> at_origin(std::span<const RolloutStart> starts) {
 }  // namespace
 
 template <typename Scalar>
-void rollout_covariance(const UncertainModel& model, const RolloutBatch<Scalar>& given,
+void rollout_covariance(const UncertainModel& model, const RolloutBatch<Scalar>& batch,
                         std::span<std::type_identity_t<Scalar>> out, std::span<const double> growth,
                         const RolloutOptions& options) {
   check_uncertainty(model);
-  check_batch(given);
-  const std::vector<RolloutStart> starts = at_origin(given.starts);
-  RolloutBatch<Scalar> batch = given;
-  batch.starts = starts;
+  check_batch(batch);
+  const std::vector<RolloutStart> starts = at_origin(batch.starts);
+  RolloutBatch<Scalar> from_origin = batch;
+  from_origin.starts = starts;
   const std::size_t poses = batch.rollouts * batch.periods;
   if (out.size() != kEntries * poses) {
     throw std::invalid_argument("the covariances of " + std::to_string(poses) + " poses are " +
@@ -98,7 +98,7 @@ void rollout_covariance(const UncertainModel& model, const RolloutBatch<Scalar>&
   std::atomic<unsigned> faults = kNoFault;
   share_out((batch.rollouts + kernel.lanes - 1) / kernel.lanes, options.threads,
             [&](std::size_t block, std::size_t last) {
-              TangentBlocks<Scalar> blocks(plan, batch, kernel, out);
+              TangentBlocks<Scalar> blocks(plan, from_origin, kernel, out);
               for (; block < last; ++block) {
                 faults |= blocks.roll(block);
               }
