@@ -15,10 +15,8 @@ ScoredSegment PredictiveScore::score(const MotionModel& model, const Estimate& e
   const RowsCovariance covariance = open + scaled_covariance(expected, scale_for(at.path, noise_scale_.value()));
   const Rows innovation = error_of(segment, at);
   if (shows_noise(segment)) {
-    const Rows size = expected.diagonal();
-    noise_scale_.learn_prediction(at.path.directions(),
-                                  {alike_of_positions(segment.measured, innovation.cwiseAbs2(), size),
-                                   alike_of_positions(segment.measured, open.diagonal(), size), size});
+    const RowErrors shown{innovation.cwiseAbs2(), open.diagonal(), expected.diagonal()};
+    noise_scale_.learn_prediction(at.path.directions(), alike_of_positions(segment.measured, shown));
   }
   return {innovation, covariance, normalised_square(innovation, covariance)};
 }

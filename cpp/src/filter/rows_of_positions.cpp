@@ -20,4 +20,9 @@ Rows alike_of_positions(const std::vector<Measured>& measured, Rows squared, con
   return squared;
 }
 
+RowErrors alike_of_positions(const std::vector<Measured>& measured, const RowErrors& errors) {
+  return {alike_of_positions(measured, errors.squared, errors.expected),
+          alike_of_positions(measured, errors.open, errors.expected), errors.expected};
+}
+
 }  // namespace slipwise

@@ -68,10 +68,8 @@ void KnownSources::look(const MotionPosterior& posterior, const DrivenSegment& d
   const RowsCovariance open = at.by_parameter * posterior.estimate.covariance * at.by_parameter.transpose();
   const RowsCovariance expected = slip_covariance(at.path, posterior.noise) +
                                   at.path.measurement_noise(rows_of(seen.segment.measured), posterior.noise);
-  const Rows size = expected.diagonal();
-  noise_.learn(item.classes[0], at.path.directions(),
-               {alike_of_positions(seen.segment.measured, shorter_error_of(seen.segment, at).cwiseAbs2(), size),
-                alike_of_positions(seen.segment.measured, open.diagonal(), size), size});
+  const RowErrors shown{shorter_error_of(seen.segment, at).cwiseAbs2(), open.diagonal(), expected.diagonal()};
+  noise_.learn(item.classes[0], at.path.directions(), alike_of_positions(seen.segment.measured, shown));
 }
 
 /// Puts the segment where and when it really was; false while too little is known of that.

@@ -22,10 +22,9 @@
 #endif
 #define SLIPWISE_HAS_LEVEL
 #include "slipwise/rollout/lane_car.hpp"
-#include "slipwise/rollout/lane_futures.hpp"
 #include "slipwise/rollout/lane_kernel.hpp"
 #include "slipwise/rollout/lane_limiter.hpp"
-#include "slipwise/rollout/lane_tangents.hpp"
+#include "slipwise/rollout/uncertain_kernels.hpp"
 #endif
 
 namespace slipwise {
@@ -45,14 +44,6 @@ LaneKernelOfLevel<Scalar> kernel() {
           Lanes<Level, Scalar>::kLanes};
 }
 
-template <typename Scalar>
-UncertainKernels<Scalar> uncertain() {
-  constexpr std::size_t kLanes = Lanes<Unpaired<Level>, Scalar>::kLanes;
-  const auto limit = limit_block<Unpaired<Level>, Scalar>;
-  return {.tangents = {roll_tangents<Level, Scalar>, limit, nullptr, kLanes},
-          .futures = {roll_futures<Level, Scalar>, limit, nullptr, kLanes}};
-}
-
 }  // namespace
 #if defined(__clang__)
 #pragma clang attribute pop
@@ -62,8 +53,8 @@ UncertainKernels<Scalar> uncertain() {
 
 LaneKernelOfLevel<float> avx512_kernel(float /*scalar*/) { return kernel<float>(); }
 LaneKernelOfLevel<double> avx512_kernel(double /*scalar*/) { return kernel<double>(); }
-UncertainKernels<float> avx512_uncertain(float /*scalar*/) { return uncertain<float>(); }
-UncertainKernels<double> avx512_uncertain(double /*scalar*/) { return uncertain<double>(); }
+UncertainKernels<float> avx512_uncertain(float /*scalar*/) { return uncertain_kernels<Level, float>(); }
+UncertainKernels<double> avx512_uncertain(double /*scalar*/) { return uncertain_kernels<Level, double>(); }
 #else
 LaneKernelOfLevel<float> avx512_kernel(float /*scalar*/) { return {nullptr, nullptr, nullptr, 0}; }
 LaneKernelOfLevel<double> avx512_kernel(double /*scalar*/) { return {nullptr, nullptr, nullptr, 0}; }

@@ -6,10 +6,9 @@
 #include <type_traits>
 
 #include "slipwise/rollout/lane_car.hpp"
-#include "slipwise/rollout/lane_futures.hpp"
 #include "slipwise/rollout/lane_kernel.hpp"
 #include "slipwise/rollout/lane_limiter.hpp"
-#include "slipwise/rollout/lane_tangents.hpp"
+#include "slipwise/rollout/uncertain_kernels.hpp"
 
 namespace slipwise {
 namespace {
@@ -19,14 +18,6 @@ struct Level {
   static constexpr std::size_t kPairs = 1;
   static constexpr bool kSingleLoop = true;  ///< a loop of its own without an actuator: measured, here it is faster
 };
-
-template <typename Scalar>
-UncertainKernels<Scalar> uncertain() {
-  constexpr std::size_t kLanes = Lanes<Unpaired<Level>, Scalar>::kLanes;
-  const auto limit = limit_block<Unpaired<Level>, Scalar>;
-  return {.tangents = {roll_tangents<Level, Scalar>, limit, nullptr, kLanes},
-          .futures = {roll_futures<Level, Scalar>, limit, nullptr, kLanes}};
-}
 
 }  // namespace
 
@@ -38,7 +29,7 @@ LaneKernelOfLevel<double> portable_kernel(double /*scalar*/) {
           Lanes<Level, double>::kLanes};
 }
 
-UncertainKernels<float> portable_uncertain(float /*scalar*/) { return uncertain<float>(); }
-UncertainKernels<double> portable_uncertain(double /*scalar*/) { return uncertain<double>(); }
+UncertainKernels<float> portable_uncertain(float /*scalar*/) { return uncertain_kernels<Level, float>(); }
+UncertainKernels<double> portable_uncertain(double /*scalar*/) { return uncertain_kernels<Level, double>(); }
 
 }  // namespace slipwise
