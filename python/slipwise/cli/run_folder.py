@@ -88,12 +88,23 @@ def _toml(value: Any) -> str:
 
 @contextlib.contextmanager
 def _signals_held() -> Iterator[None]:
-    """Let Ctrl-C and SIGTERM wait, so that a folder is never created and then forgotten."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
+    """Let Ctrl-C and SIGTERM wait, so that a folder is never created and then forgotten.
+
+    Their handlers wait, not the signals: a signal that this thread blocks goes to another thread of a
+    library, and Python then calls the handler in this one.
+    """
+    came: list[int] = []
+    before = {
+        number: signal.signal(number, lambda sent, _: came.append(sent))
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        for sent in came[:1]:
+            signal.raise_signal(sent)
 
 
 def _create(runs: Path, command: str) -> Path:

@@ -49,6 +49,35 @@ def test_ctrl_c_while_learning_leaves_nothing(
     assert left_in(long_csv.parent) == {"long.csv"}
 
 
+def test_a_signal_that_another_thread_gets_while_the_folder_is_made_leaves_nothing(folder: Path) -> None:
+    program = """
+import os, signal, sys, threading, time
+from pathlib import Path
+from slipwise.cli.errors import exit_code_of
+from slipwise.cli.run_folder import run_folder
+
+threading.Thread(target=threading.Event().wait, daemon=True).start()
+made = Path.mkdir
+
+def mkdir(path, *mode, **how):
+    made(path, *mode, **how)
+    if path.name != "runs":
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.1)
+
+Path.mkdir = mkdir
+
+def command():
+    with run_folder(Path("runs"), "calibrate"):
+        return 0
+
+sys.exit(exit_code_of(command, debug=False))
+"""
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr, left_in(folder)) == (2, f"slipwise: {STOPPED}\n", set())
+
+
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_ctrl_c_while_python_compiles_a_text_ends_with_the_same_code(
     folder: Path, sent: signal.Signals
