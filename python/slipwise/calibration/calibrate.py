@@ -49,6 +49,7 @@ from slipwise.logs.motion_windows import evidence_of
 from slipwise.models import schema
 from slipwise.models.axes import sideways_span
 from slipwise.models.model import Model
+from slipwise.segments import attitude_rows
 
 JUDGING_HORIZONS = (1.0, 2.0, 5.0)  # s
 
@@ -306,8 +307,7 @@ def _range(drive: tuple[PreparedRun, ...]) -> schema.Range:
     ]
     speed, yaw_rate = (np.concatenate(axis) for axis in zip(*given, strict=True))
     sideways = np.concatenate([run.inputs.vy for run in drive])
-    tilts = [t for run in drive for t in (run.run.poses.roll, run.run.poses.pitch) if t is not None]
-    steepest = float(np.nanmax(np.abs(np.concatenate(tilts)))) if tilts else 0.0
+    tilts = np.concatenate([attitude_rows(run.run)[:, 1:] for run in drive])
     wheels = WheelStep()
     for run in drive:
         if run.run.wheels is not None:
@@ -316,6 +316,6 @@ def _range(drive: tuple[PreparedRun, ...]) -> schema.Range:
         speed=[float(speed.min()), float(speed.max())],
         yaw_rate=[float(yaw_rate.min()), float(yaw_rate.max())],
         sideways=sideways_span(speed, sideways),
-        slope=steepest if np.isfinite(steepest) else 0.0,
+        slope=float(np.abs(tilts).max(initial=0.0)),
         wheel_step=wheels.seconds,
     )

@@ -9,14 +9,15 @@ from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.calibration.position_settings import for_positions
 from slipwise.calibration.settings import Settings
 from slipwise.errors import LogError
+from slipwise.logs.attitude import was_measured
 from slipwise.logs.log import Log, has_course
+from slipwise.segments import attitude_rows
 
 #: Bases with terms of gravity that `auto` averages too where roll and pitch were measured.
 SLOPE_BASES = ("odd-even-13", "drive-9")
 #: The same where the vehicle drives sideways.
 SIDEWAYS_BASES = ("omni-8",)
 SIDEWAYS_SPEED, SIDEWAYS_PART = 0.05, 0.01  # m/s, and part of the inputs that are faster to a side
-_TINY = 1e-12  # rad; what is smaller everywhere was never measured
 
 
 def has_attitude(log: Log) -> bool:
@@ -25,12 +26,7 @@ def has_attitude(log: Log) -> bool:
     How much they vary is not asked: a log that is cut off is learned with the same terms, so that no
     prediction depends on what comes after it.
     """
-    return any(
-        np.nanmax(np.abs(angle), initial=0.0) > _TINY
-        for run in log.runs
-        if run.poses.roll is not None and run.poses.pitch is not None
-        for angle in (run.poses.roll, run.poses.pitch)
-    )
+    return any(was_measured(attitude_rows(run)[:, 1:]) for run in log.runs)
 
 
 def has_known_force(log: Log) -> bool:

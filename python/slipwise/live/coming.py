@@ -7,8 +7,11 @@ import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
+import numpy as np
+
 from slipwise.calibration.coming import Coming
 from slipwise.live.samples import Command, KnownForce, Pose, Reading, Sample, Wheels
+from slipwise.logs.attitude import was_measured
 from slipwise.logs.gyro import COLUMN as GYRO
 from slipwise.logs.vocabulary import measured_by
 
@@ -54,13 +57,14 @@ class ComingSoon:
         """Return what comes, by the samples and by the columns of the lines; some may be empty yet."""
         names = tuple(dict.fromkeys(pose.source for pose in self._poses if pose.source))
         fixes = "fix" in columns and bool(self._poses)
-        headed = any(math.isfinite(pose.yaw) for pose in self._poses if pose.source in ("", *names[:1]))
-        tilted = any(pose.roll or pose.pitch for pose in self._poses)
+        first = [pose for pose in self._poses if pose.source in ("", *names[:1])]
+        headed = any(math.isfinite(pose.yaw) for pose in first)
+        tilts = [angle for pose in first for angle in (pose.roll, pose.pitch) if angle is not None]
         return ComingLines(
             positions=bool(self._poses) and not headed,
             gyro_alone=GYRO in self._others and not self._poses and "x" not in columns,
             sources=names if len(names) > 1 else (names or ("",) if fixes else ()),
-            attitude=tilted or KnownForce in self._others,
+            attitude=was_measured(np.array(tilts)) or KnownForce in self._others,
             sideways=self._sideways or bool({"cmd_vy", "odo_vy"} & set(columns)),
             input_name=self._input(columns),
         )

@@ -17,6 +17,7 @@ from slipwise.live.ros_roles import (
     uses_of,
     with_oriented_imu,
 )
+from slipwise.live.ros_samples import FirstPoses
 from slipwise.live.ros_transport import CueTopics, RosTransport
 from slipwise.live.wires.wire import RosWire
 from slipwise.logs.options import LogOptions
@@ -65,6 +66,7 @@ def find_robot(  # noqa: PLR0913 (where it is, and what is known of it)
             say("satellite fixes without an IMU: positions only, headings are the direction of the path")
         seen = first_poses(first, roles, say)
         positions = only_positions(roles) or table.positions or seen.positions
+        seen = FirstPoses(positions, seen.attitude or table.attitude)
         cues = CueTopics(table.override_topic, table.surface_topic)
         transport = RosTransport(
             wire,
@@ -72,7 +74,7 @@ def find_robot(  # noqa: PLR0913 (where it is, and what is known of it)
             options,
             name=name,
             cues=cues,
-            headed=not positions,
+            seen=seen,
             simulated=simulated,
             first=first,
         )
@@ -80,7 +82,7 @@ def find_robot(  # noqa: PLR0913 (where it is, and what is known of it)
         wire.close()
         raise
     coming = Coming(
-        positions=positions,
+        positions=seen.positions,
         gyro_alone=roles.pose is None,
         sources=source_topics(roles),
         attitude=seen.attitude,

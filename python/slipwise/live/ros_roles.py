@@ -7,13 +7,18 @@ import contextlib
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
+
+import numpy as np
 
 from slipwise.live.cdr_reader import reader_of
 from slipwise.live.first_messages import FirstMessages
 from slipwise.live.one_rotation import rotation_of
+from slipwise.live.ros_samples import FirstPoses
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.wire import RosWire
+from slipwise.logs.attitude import was_measured
+from slipwise.logs.log import Floats
 from slipwise.logs.messages import IMU, IMU_VALUES, NAV_SAT_FIX, POSE_VALUES, TF, Values
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import NONE, Topic
@@ -103,13 +108,6 @@ def with_oriented_imu(first: FirstMessages, roles: Roles, say: Callable[[str], N
     return roles
 
 
-class FirstPoses(NamedTuple):
-    """What the first poses show."""
-
-    positions: bool = False  # they have no rotation: they are positions, as `calibrate` takes them
-    attitude: bool = False  # they have a roll or a pitch: terms of gravity are tried
-
-
 def first_poses(first: FirstMessages, roles: Roles, say: Callable[[str], None]) -> FirstPoses:
     """Return what the first poses show; of satellite fixes, what the IMU beside them does.
 
@@ -122,14 +120,19 @@ def first_poses(first: FirstMessages, roles: Roles, say: Callable[[str], None]) 
         return FirstPoses()
     if roles.pose.type == NAV_SAT_FIX:
         angles = _first_angles(first, roles.imu, IMU_VALUES[IMU]) if roles.imu is not None else None
-        positions = False
-    else:
-        kind = POSE_VALUES[roles.pose.type]
-        angles = _first_angles(first, roles.pose, lambda message: kind(message)[3:7])
-        positions = bool(angles) and not any(angles or ())
+        return FirstPoses(attitude=any(map(was_measured, _tilts(angles))))
+    kind = POSE_VALUES[roles.pose.type]
+    angles = _first_angles(first, roles.pose, lambda message: kind(message)[3:7])
+    positions = bool(angles) and not any(angles or ())
     if positions:
         say(f"the quaternions of {roles.pose.name} are no rotations: positions only")
-    return FirstPoses(positions, any(each and (each[0] or each[1]) for each in angles or ()))
+    return FirstPoses(positions, attitude=all(map(was_measured, _tilts(angles))))
+
+
+def _tilts(angles: list[tuple[float, float, float] | None] | None) -> tuple[Floats, Floats]:
+    """Return the rolls and the pitches, [N] each."""
+    roll, pitch, _ = np.array([each for each in angles or () if each is not None]).reshape(-1, 3).T
+    return roll, pitch
 
 
 def _first_angles(

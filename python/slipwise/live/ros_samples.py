@@ -5,14 +5,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from slipwise.errors import SettingsError
 from slipwise.live.one_rotation import deviation, rotation_of
 from slipwise.live.samples import Command, Pose, Reading, Wheels
-from slipwise.logs.corrections import late_by
+from slipwise.logs.attitude import was_measured
+from slipwise.logs.corrections import OneAttitude, late_by, turned_one
 from slipwise.logs.findings.topics import ZeroCovariance, ZeroTwist
 from slipwise.logs.fixes import fix_of_status
 from slipwise.logs.gyro import COLUMN as GYRO
@@ -188,21 +189,45 @@ class _Covariances:
                 self._say(self._looked_at)
 
 
+class FirstPoses(NamedTuple):
+    """What the first poses show."""
+
+    positions: bool = False  # they have no rotation: they are positions, as `calibrate` takes them
+    attitude: bool = False  # roll and pitch are measured, as `calibrate` sees it: terms of gravity are tried
+
+
+NOTHING_SEEN = FirstPoses()
+
+
+class _Tilts:
+    """Tells whether a topic's quaternions measure roll and pitch."""
+
+    def __init__(self, *, known: bool) -> None:
+        self._roll = self._pitch = known
+
+    def take(self, roll: float, pitch: float) -> tuple[float, float] | tuple[None, None]:
+        """Return roll and pitch where both were measured by now."""
+        if not (self._roll and self._pitch):
+            self._roll = self._roll or was_measured(roll)
+            self._pitch = self._pitch or was_measured(pitch)
+        return (roll, pitch) if self._roll and self._pitch else (None, None)
+
+
 def to_pose(
     kind: str,
     options: LogOptions,
     say: Callable[[str], None] = _nobody,
     topic: str = "",
-    *,
-    headed: bool = True,
+    seen: FirstPoses = NOTHING_SEEN,
 ) -> ToPose:
     """Return what makes a pose of a message of type `kind` and its stamp [s]; not of satellite fixes.
 
     `say` is called with what is found of `topic`.
-    Unless poses are `headed`, one whose quaternion is no rotation is a position: its yaw is NaN.
+    A quaternion that is no rotation is a position where poses were `seen` as such: its yaw is NaN.
+    Unless an attitude was seen, poses have a roll and a pitch from when on both were measured.
     """
-    values, offset = POSE_VALUES[kind], options.pose_yaw_offset
-    late = late_by(options)
+    values, offset, late = POSE_VALUES[kind], options.pose_yaw_offset, late_by(options)
+    tilts = _Tilts(known=seen.attitude)
     covariances = _Covariances(lambda count: say(ZeroCovariance.of(topic, count).sentence))
 
     def pose(message: Any, t: float) -> Pose | None:
@@ -211,7 +236,7 @@ def to_pose(
         covariances.take(var_x, var_y, var_yaw)
         angles = rotation_of(qx, qy, qz, qw)
         std_xy, std_yaw = deviation(var_x, var_y), deviation(var_yaw)
-        if angles is None and headed:
+        if angles is None and not seen.positions:
             raise ValueError(
                 f"the quaternion ({qx:g}, {qy:g}, {qz:g}, {qw:g}) is not a rotation; where no pose has one, "
                 "--set live.positions=true uses the positions alone"
@@ -219,8 +244,8 @@ def to_pose(
         if angles is None:
             return Pose(t + late, x, y, math.nan, std_xy, frame=message.header.frame_id)
         roll, pitch, yaw = angles
-        tilt = (roll, pitch) if roll or pitch else (None, None)
-        return Pose(t + late, x, y, yaw + offset, std_xy, std_yaw, message.header.frame_id, *tilt)
+        robot = turned_one((yaw, *tilts.take(roll, pitch)), offset)
+        return Pose(t + late, x, y, robot[0], std_xy, std_yaw, message.header.frame_id, *robot[1:])
 
     return pose
 
@@ -241,13 +266,14 @@ class FixPoses:
         self._headed, self._late = headed, late_by(options)
         self._offset = options.pose_yaw_offset
         self._origin: tuple[float, float, float] | None = None
-        self._imu: tuple[float, float, float, float] | None = None  # stamp [s], roll, pitch, yaw [rad]
+        self._imu: tuple[float, OneAttitude] | None = None  # stamp [s], of the robot
 
     def take_imu(self, message: Any, t: float) -> None:
         """Take an orientation."""
         angles = rotation_of(*_values(IMU_VALUES, message))
         if angles is not None:
-            self._imu = (t, *angles)
+            roll, pitch, yaw = angles
+            self._imu = (t, turned_one((yaw, roll, pitch), self._offset))
 
     def take_fix(self, message: Any, t: float) -> Pose | None:
         """Return the pose of a fix; None without a fix, or without a heading of the same time."""
@@ -263,8 +289,7 @@ class FixPoses:
             return Pose(t + self._late, x, y, math.nan, std_xy, frame=frame, fix=sort)
         if self._imu is None or abs(t - self._imu[0]) > OLDEST_IMU:
             return None
-        _, roll, pitch, yaw = self._imu
-        yaw += self._offset
+        yaw, roll, pitch = self._imu[1]
         return Pose(t + self._late, x, y, yaw, std_xy, frame=frame, roll=roll, pitch=pitch, fix=sort)
 
 

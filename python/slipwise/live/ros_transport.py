@@ -20,7 +20,16 @@ from slipwise.live.node_parameters import NodeParameters
 from slipwise.live.outputs import AppliedParameters, Output, Status
 from slipwise.live.ros_messages import TOPICS, RosMessages, RosTopic
 from slipwise.live.ros_roles import Use, uses_of
-from slipwise.live.ros_samples import FixPoses, ToPose, to_command, to_gyro, to_pose, to_wheels
+from slipwise.live.ros_samples import (
+    NOTHING_SEEN,
+    FirstPoses,
+    FixPoses,
+    ToPose,
+    to_command,
+    to_gyro,
+    to_pose,
+    to_wheels,
+)
 from slipwise.live.samples import Override, Pose, Request, SurfaceCue, Unusable
 from slipwise.live.stamps import Stamps
 from slipwise.live.transport import OnSample
@@ -59,7 +68,7 @@ class RosTransport:
         options: scales and sizes.
         name: of the node.
         cues: topics on which others say what they know.
-        headed: poses have headings; those without are positions otherwise.
+        seen: what the first poses show.
         simulated: whether /clock gives the time; None: where somebody publishes it.
         first: messages of the topics that came before; None: none.
     """
@@ -72,14 +81,14 @@ class RosTransport:
         *,
         name: str,
         cues: CueTopics = _NO_CUES,
-        headed: bool = True,
+        seen: FirstPoses = NOTHING_SEEN,
         simulated: bool | None = None,
         first: FirstMessages | None = None,
     ) -> None:
         self._first, self._takers = first or FirstMessages(wire), dict[str, OnMessage]()
         self._wire, self._roles, self._options = wire, roles, options
         self._name, self._override, self._terrain = name, cues.override, cues.terrain
-        self._headed, self._simulated = headed, simulated
+        self._seen, self._simulated = seen, simulated
         self._messages, self._listeners = RosMessages(name), Listeners(wire.connections)
         self._reading = ros_types()
         self._notices: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -225,7 +234,7 @@ class RosTransport:
             case "pose":
                 if kind == NAV_SAT_FIX:
                     return fixes.take_fix
-                return to_pose(kind, options, self._notices.put, topic.name, headed=self._headed)
+                return to_pose(kind, options, self._notices.put, topic.name, self._seen)
             case "orientation":
                 return fixes.take_imu
             case "gyro":

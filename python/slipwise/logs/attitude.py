@@ -13,11 +13,21 @@ from slipwise.logs.findings.readings import TiltedSensor, TiltInDegrees
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Floats, Log, Poses, Run
 from slipwise.logs.motion_windows import wrapped
+from slipwise.number_text import ROUNDING
 
 _ENOUGH = 20  # attitudes; with fewer nothing is said of their unit
 _STEADY = 0.8  # mean length of the direction that is up: a robot that tilts by 37 deg about its mean
 _SLOPE = 60.0  # [deg] no robot drives on a steeper one
 _YAW_HOLDS = np.pi / 4  # [rad] of pitch; beyond it the yaw of a sensor is not the robot's
+
+
+def was_measured(values: Floats | float) -> bool:
+    """Return whether some angle [rad] or height [m] of a source is more than rounding, [...].
+
+    A roll and a pitch of a quaternion are an attitude where both were measured: a robot that was put into
+    space with a roll alone has a pitch of rounding errors.
+    """
+    return bool(np.nanmax(np.abs(values), initial=0.0) > ROUNDING)
 
 
 def levelled(log: Log) -> Log:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.attitude import was_measured
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.topics import NoRotation, ZeroCovariance, ZeroTwist
 from slipwise.logs.fixes import status_codes
@@ -24,9 +25,6 @@ from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
 from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.wheel_readings import JointReadings, twists_of_wheels
-
-_TINY = 1e-12  # heights and tilts below this were never measured
-
 
 _NO_CLOCKS = BagClocks(None, {})
 
@@ -167,7 +165,7 @@ def pose_stream(context: BagContext, samples: Samples, inputs: Inputs | None = N
     roll, pitch, yaw = angles_of(q)
     columns = {"x": values[:, 0], "y": values[:, 1], "yaw": yaw, "frame": samples.frame.astype(np.float64)}
     for name, column in (("z", values[:, 2]), ("roll", roll), ("pitch", pitch)):
-        if np.nanmax(np.abs(column), initial=0.0) > _TINY:
+        if was_measured(column):
             columns |= {name: column}
     if values.shape[1] > 7:
         columns["std_xy"] = deviation_of(values[:, 7:9])

@@ -14,6 +14,8 @@ from slipwise.logs.options import LogOptions
 
 _AS_IT_IS = (1.0, 1.0)
 
+OneAttitude = tuple[float, float | None, float | None]  # yaw, roll and pitch [rad]
+
 
 def scaled_inputs(log: Log, options: LogOptions) -> Log:
     """Return the log with the scales of the options applied to its inputs; each is noted."""
@@ -75,6 +77,25 @@ def turned(
     turned_y = np.cos(offset) * down_y - np.sin(offset) * down_x
     roll = np.arctan2(-turned_y, np.cos(pitch) * np.cos(roll))
     return yaw, roll, np.arcsin(np.clip(turned_x, -1.0, 1.0))
+
+
+def turned_one(angles: OneAttitude, offset: float) -> OneAttitude:
+    """Return `turned` of one pose; its roll and pitch are known together, or neither."""
+    yaw, roll, pitch = angles
+    if roll is None or pitch is None:
+        roll = pitch = None
+    if offset == 0.0:
+        return yaw, roll, pitch
+    made = turned((np.array([yaw]), _row(roll), _row(pitch)), offset)
+    return float(made[0][0]), _number(made[1]), _number(made[2])
+
+
+def _row(angle: float | None) -> Floats | None:
+    return None if angle is None else np.array([angle])
+
+
+def _number(row: Floats | None) -> float | None:
+    return None if row is None else float(row[0])
 
 
 def late_by(options: LogOptions) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 from slipwise.errors import LogError
 from slipwise.logs.car_commands import beyond_words
 from slipwise.logs.column_names import check_columns, place_of
-from slipwise.logs.corrections import late_by, turned
+from slipwise.logs.corrections import late_by, turned_one
 from slipwise.logs.fixes import FIXES, NO_FIX, fix_number
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, Floats
@@ -198,22 +198,18 @@ class RowReader:
 
     def _pose(self, view: _View, pose: Mapping[str, float], source: str, fix: str) -> Pose:
         beside = {name: float(believed(name, np.array([value]))[0]) for name, value in pose.items()}
-        yaw = np.array([pose.get("yaw", math.nan)])
-        angles = (yaw, _angle(beside, "roll"), _angle(beside, "pitch"))
-        yaw, roll, pitch = turned(angles, self._options.pose_yaw_offset)
-        tilt: tuple[float, float] | tuple[None, None] = (None, None)
-        if roll is not None and pitch is not None and np.isfinite([*roll, *pitch]).all():
-            tilt = (float(roll[0]), float(pitch[0]))
+        angles = (pose.get("yaw", math.nan), _known(beside, "roll"), _known(beside, "pitch"))
+        yaw, roll, pitch = turned_one(angles, self._options.pose_yaw_offset)
         return Pose(
             view.t + self._late,
             pose["x"],
             pose["y"],
-            float(yaw[0]),
+            yaw,
             _known(beside, "std_xy"),
             _known(beside, "std_yaw"),
             text_of(view.cells, "frame"),
-            tilt[0],
-            tilt[1],
+            roll,
+            pitch,
             source,
             fix,
         )
@@ -303,7 +299,3 @@ def text_of(cells: Mapping[str, object], name: str) -> str:
 def _known(values: Mapping[str, float], name: str) -> float | None:
     value = values.get(name, math.nan)
     return value if math.isfinite(value) else None
-
-
-def _angle(values: Mapping[str, float], name: str) -> Floats | None:
-    return np.array([values[name]]) if name in values else None

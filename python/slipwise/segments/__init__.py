@@ -5,6 +5,7 @@ from slipwise.segments.sources import source_names, sourced_rows
 from slipwise.segments.windows import (
     WindowRules,
     Windows,
+    attitude_rows,
     car_prior,
     cut_windows,
     force_rows,
@@ -19,6 +20,7 @@ from slipwise.segments.windows import (
 __all__ = [
     "WindowRules",
     "Windows",
+    "attitude_rows",
     "car_prior",
     "cut_windows",
     "force_rows",

@@ -10,13 +10,13 @@ import pytest
 
 from slipwise.live.first_messages import FirstMessages
 from slipwise.live.ros_roles import (
-    FirstPoses,
     first_poses,
     only_positions,
     source_topics,
     uses_of,
     with_oriented_imu,
 )
+from slipwise.live.ros_samples import FirstPoses
 from slipwise.live.ros_transport import CueTopics, RosTransport
 from slipwise.live.samples import Pose, Reading, Sample
 from slipwise.live.wires.ros_types import ros_types
@@ -117,9 +117,9 @@ def test_an_imu_without_an_orientation_gives_no_headings(oriented: bool) -> None
     assert said == ([] if oriented else ["/imu has no orientation: its yaw rates are used"])
 
 
-def lidar(w: float, qx: float = 0.0) -> bytes:
+def lidar(w: float, qx: float = 0.0, qy: float = 0.0) -> bytes:
     q, at = (
-        made("geometry_msgs/msg/Quaternion", qx, 0.0, 0.0, w),
+        made("geometry_msgs/msg/Quaternion", qx, qy, 0.0, w),
         made("geometry_msgs/msg/Point", 1.0, 2.0, 0.0),
     )
     message = made(POSE_STAMPED, header(), made("geometry_msgs/msg/Pose", at, q))
@@ -131,12 +131,12 @@ def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float)
     said: list[str] = []
     wire = Wire({"/lidar": [lidar(w)] * 3})
     first = FirstMessages(wire, topics_of(roles(LIDAR)))
-    positions, attitude = first_poses(first, roles(LIDAR), said.append)
+    seen = first_poses(first, roles(LIDAR), said.append)
+    positions, attitude = seen
     assert positions is (w == 0.0)
     assert not attitude
     assert said == (["the quaternions of /lidar are no rotations: positions only"] if positions else [])
-    options, headed = LogOptions(), not positions
-    transport = RosTransport(wire, roles(LIDAR), options, name="slipwise", headed=headed, first=first)
+    transport = RosTransport(wire, roles(LIDAR), LogOptions(), name="slipwise", seen=seen, first=first)
     found: list[Sample] = []
     transport.subscribe(found.append)
     poses = [pose for pose in found if isinstance(pose, Pose)]
@@ -144,12 +144,14 @@ def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float)
     assert all(np.isnan(pose.yaw) is np.bool_(positions) for pose in poses)
 
 
-def test_poses_with_a_roll_or_a_pitch_are_learned_from_with_terms_of_gravity() -> None:
+def test_poses_with_a_roll_and_a_pitch_are_learned_from_with_terms_of_gravity() -> None:
     def seen(chosen: Roles, messages: dict[str, list[bytes]]) -> FirstPoses:
         return first_poses(FirstMessages(Wire(messages), topics_of(chosen)), chosen, print)
 
-    tilted = [lidar(1.0), lidar(0.96, 0.28), lidar(1.0)]
+    tilted = [lidar(1.0), lidar(0.8, 0.48, 0.36), lidar(1.0)]
     assert seen(roles(LIDAR), {"/lidar": tilted}) == (False, True)
+    rolled = [lidar(1.0), lidar(0.96, 0.28), lidar(1.0)]
+    assert seen(roles(LIDAR), {"/lidar": rolled}) == (False, False)
     fixes = roles(FIX, headed=True)
     level, none = (seen(fixes, {"/imu": [imu(oriented=oriented)] * 3}) for oriented in (True, False))
     assert level == none
