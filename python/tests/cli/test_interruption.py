@@ -94,15 +94,20 @@ sys.exit(exit_code_of(lambda: exec({stop!r}), debug=False))
     assert (done.returncode, done.stderr) == (2, f"slipwise: {STOPPED}\n")
 
 
+def has_begun(pid: int) -> bool:
+    """Whether a process simulates; one that has ended meanwhile does not."""
+    try:
+        return "libmujoco" in Path(f"/proc/{pid}/maps").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
 def test_ctrl_c_while_simulating_leaves_nothing(interrupted: Slipwise, folder: Path) -> None:
     pytest.importorskip("mujoco")
 
-    def simulating(pid: int) -> bool:
-        return "libmujoco" in Path(f"/proc/{pid}/maps").read_text()
-
     if not Path("/proc/self/maps").exists():
         pytest.skip("no /proc to see whether the simulation has begun")
-    result = interrupted("simulate", "-o", "drive.mcap", "--duration", "36000", at_work=simulating)
+    result = interrupted("simulate", "-o", "drive.mcap", "--duration", "36000", at_work=has_begun)
     assert (result.code, result.out, result.line) == (2, "", STOPPED)
     assert left_in(folder) == set()
 
@@ -117,7 +122,7 @@ def test_ctrl_c_ends_the_workers_of_a_reproduction_too(
 
     def simulating(pid: int) -> bool:
         children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
-        workers.update(int(c) for c in children if "libmujoco" in Path(f"/proc/{c}/maps").read_text())
+        workers.update(child for child in map(int, children) if has_begun(child))
         return bool(workers)
 
     if not Path("/proc/self/maps").exists():

@@ -21,6 +21,7 @@ class Server:
     silent: bool = False  # about how long a file is
     cut: bool = False  # before the end
     pause: float = 0.0  # s between two bytes
+    sent: int = 0  # bytes, with pauses
     headers: dict[str, str] = field(default_factory=dict)  # beside the length
 
 
@@ -53,6 +54,7 @@ def serving() -> Iterator[Server]:
                     for byte in content:
                         self.wfile.write(bytes([byte]))
                         self.wfile.flush()
+                        shared.sent += 1
                         time.sleep(shared.pause)
             elif body:
                 self.wfile.write(content[: len(content) // 2] if shared.cut else content)

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -194,7 +193,6 @@ def test_a_server_that_sends_byte_by_byte_is_given_up_in_proportion_to_the_size(
 ) -> None:
     monkeypatch.setattr(remote, "_PATIENCE", 0.4)
     server.files["/a.csv"], server.pause = DRIVE, 0.05
-    began = time.monotonic()
     with pytest.raises(LogError, match=r"too slow: \d+ bytes|cannot be fetched: .*Timeout"):
         open_log(f"{server.address}/a.csv")
-    assert time.monotonic() - began < 5.0
+    assert server.sent * server.pause < 5.0  # s of the server's; what a busy machine takes is not counted

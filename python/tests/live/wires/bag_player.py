@@ -1,24 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """A real ROS 2 node that plays messages: run with a Python that has rclpy, given a file of JSON lines.
 
-Each line has the time of sending [s], the topic, the type and the message as base64; subscribers of all
-topics are waited for. What the node under test publishes is counted, and printed at the end.
+What the node under test publishes is counted, and printed at the end.
 """
 
 from __future__ import annotations
 
-import base64
 import json
 import sys
 import threading
-import time
 from collections import Counter
-from importlib import import_module
-from pathlib import Path
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from ros_player import get_message, play
 
 HEARD = {
     "odometry": "nav_msgs/msg/Odometry",
@@ -33,11 +29,6 @@ HEARD = {
 LATCHED = ("model", "surface", "surfaces", "next_moves")
 
 
-def get_message(name: str) -> type:
-    package, kind, message = name.split("/")
-    return getattr(import_module(f"{package}.{kind}"), message)
-
-
 def plain(surfaces: object) -> dict[str, object]:
     remembered = sorted(each.name for each in surfaces.remembered)
     names, probabilities = list(surfaces.names), list(surfaces.probabilities)
@@ -48,11 +39,6 @@ def plain(surfaces: object) -> dict[str, object]:
 def main(file: str, rate: float) -> None:
     rclpy.init()
     node = rclpy.create_node("player")
-    lines = [json.loads(line) for line in Path(file).read_text().splitlines()]
-    types = {line["topic"]: line["type"] for line in lines}
-    publishers = {
-        topic: node.create_publisher(get_message(kind), topic, 1000) for topic, kind in types.items()
-    }
     heard: Counter[str] = Counter()
     last: dict[str, object] = {}
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -70,15 +56,7 @@ def main(file: str, rate: float) -> None:
     executor.add_node(node)
     spinning = threading.Thread(target=executor.spin, daemon=True)
     spinning.start()
-    until = time.monotonic() + 60.0
-    while not all(each.get_subscription_count() for each in publishers.values()) and time.monotonic() < until:
-        time.sleep(0.05)
-    time.sleep(1.0)
-    begin = time.monotonic()
-    for line in lines:
-        time.sleep(max(0.0, begin + (line["t"] - lines[0]["t"]) / rate - time.monotonic()))
-        publishers[line["topic"]].publish(base64.b64decode(line["message"]))
-    time.sleep(2.0)
+    play(node, file, rate, lambda: last.get("odometry"))
     odometry, model = last.get("odometry"), last.get("model")
     found = {
         "heard": dict(heard),

@@ -3,14 +3,10 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import sys
 import threading
-import time
 from collections import Counter
-from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import rclpy
@@ -23,6 +19,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import parameter_value_to_python
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import serialize_message
+from ros_player import play
 from slipwise_msgs.msg import MotionModel, SlipState
 from slipwise_msgs.srv import PredictPath
 from std_msgs.msg import String
@@ -89,7 +86,8 @@ class Manager:
             found = self.call(DescribeParameters, "describe_parameters", request).descriptors
             return {each.name: each.description for each in found}
         if do == "play":
-            return self.play(asked["file"], asked["rate"])
+            self.last.pop("odometry", None)
+            return play(self.node, asked["file"], asked["rate"], lambda: self.last.get("odometry"))
         return {
             "count": dict(self.count),
             "model": self.last["model"].data if "model" in self.last else "",
@@ -108,29 +106,6 @@ class Manager:
         said = self.call(PredictPath, "predict_path", request)
         places = [(pose.pose.position.x, pose.pose.position.y) for pose in said.path.poses]
         return {"success": said.success, "message": said.message, "path": places, "n": len(said.covariance)}
-
-    def play(self, file: str, rate: float) -> int:
-        """Publish the messages of a file at a rate; subscribers of all topics are waited for."""
-        lines = [json.loads(line) for line in Path(file).read_text().splitlines()]
-        types = {line["topic"]: line["type"] for line in lines}
-        publishers = {}
-        for topic, name in types.items():
-            package, kind, message = name.split("/")
-            made = getattr(import_module(f"{package}.{kind}"), message)
-            publishers[topic] = self.node.create_publisher(made, topic, 1000)
-        until = time.monotonic() + 30.0
-        while not all(each.get_subscription_count() for each in publishers.values()):
-            assert time.monotonic() < until, "nobody subscribes"
-            time.sleep(0.05)
-        time.sleep(1.0)
-        begin = time.monotonic()
-        for line in lines:
-            time.sleep(max(0.0, begin + (line["t"] - lines[0]["t"]) / rate - time.monotonic()))
-            publishers[line["topic"]].publish(base64.b64decode(line["message"]))
-        time.sleep(1.5)
-        for publisher in publishers.values():
-            self.node.destroy_publisher(publisher)
-        return len(lines)
 
 
 def main(name: str) -> None:

@@ -101,7 +101,7 @@ def test_a_managed_node_learns_what_calibrate_does_and_answers(ros_python: Path,
     wanted = without_origin(sw.calibrate(sw.open_log(bag), input="command").model.to_yaml())
     with (
         slipwise_ros(ros_python, parameters(cache)) as node,
-        Peer(ros_python, "lifecycle_node.py", NODE, environment=ROS) as peer,
+        Peer(ros_python, "lifecycle_node.py", NODE, environment=ROS, patience=180.0) as peer,
     ):
         assert peer.ask("state") == "unconfigured"
         assert peer.ask("describe", names=["pose_topic"])["pose_topic"].startswith("Measured pose")
