@@ -128,7 +128,10 @@
     button.setAttribute("aria-pressed", "false");
     button.addEventListener("click", () => {
       button.setAttribute("aria-pressed", String(!pressed(button)));
-      Plotly.relayout(button.dataset.logScale, { "yaxis.type": pressed(button) ? "log" : "linear", "yaxis.autorange": true });
+      last = last.then(() => { // one that is not drawn yet is drawn as the button says
+        const axis = { "yaxis.type": pressed(button) ? "log" : "linear", "yaxis.autorange": true };
+        if (drawn.has(button.dataset.logScale)) Plotly.relayout(button.dataset.logScale, axis);
+      });
     });
   });
   pass(false);

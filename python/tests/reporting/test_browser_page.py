@@ -21,6 +21,7 @@ STATE = "document.documentElement.dataset"
 HOSTILE = '</script><script>document.documentElement.dataset.owned = "yes"</script><b>'
 DESK, PHONE = 1400, 420
 MOST_UNFOLDED = 4000  # px high on a desk
+SCALE = "document.getElementById('figure-error-position').layout.yaxis.type"
 HEIGHT = "document.documentElement.scrollHeight"
 
 
@@ -60,9 +61,11 @@ def test_a_section_draws_its_figures_when_it_is_opened_and_no_others(browser: Br
 
 
 def test_log_scale_can_be_switched_on_and_off(browser: Browser, width: int) -> None:
+    browser.value("document.querySelector('#figure-error-position').closest('details').open = true")
+    wait_for_figures(browser)
     for kind in ("log", "linear"):
         browser.value("document.querySelector('button[data-log-scale]').click()")
-        assert browser.value("document.getElementById('figure-error-position').layout.yaxis.type") == kind
+        browser.wait_for(f"{SCALE} === '{kind}'")
 
 
 def test_unfolded_all_figures_are_drawn_without_error_or_request(
@@ -110,6 +113,17 @@ def test_no_button_sends_anything(browser: Browser, page: Path) -> None:
     browser.open(page, width=DESK)
     unfold(browser)
     assert_sends_nothing(browser, page)
+
+
+def test_a_log_scale_that_is_asked_for_before_its_figure_is_drawn_is_drawn(
+    browser: Browser, page: Path
+) -> None:
+    browser.open(page, width=DESK)
+    browser.value("document.querySelector('button[data-log-scale]').click()")
+    unfold(browser)
+    assert browser.value(SCALE) == "log"
+    assert browser.value(f"{STATE}.errors") == ""
+    assert browser.problems == []
 
 
 def test_the_button_unfolds_every_section_into_a_few_screens_and_folds_them(
