@@ -27,6 +27,8 @@ def was_measured(values: Floats | float) -> bool:
     A roll and a pitch of a quaternion are an attitude where both were measured: a robot that was put into
     space with a roll alone has a pitch of rounding errors.
     """
+    if isinstance(values, float):  # each pose of a live node
+        return abs(values) > ROUNDING
     return bool(np.nanmax(np.abs(values), initial=0.0) > ROUNDING)
 
 
