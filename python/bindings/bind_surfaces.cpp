@@ -68,6 +68,7 @@ void bind_surfaces(nb::module_& m) {
       .def(nb::init<>())
       .def_rw("remember", &SurfaceSettings::remember)
       .def_rw("false_alarm", &SurfaceSettings::false_alarm)
+      .def_rw("doubt", &SurfaceSettings::doubt)
       .def_rw("drift", &SurfaceSettings::drift)
       .def_rw("soonest", &SurfaceSettings::soonest)
       .def_rw("learning_rate", &SurfaceSettings::learning_rate)

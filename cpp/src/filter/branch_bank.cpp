@@ -202,17 +202,45 @@ void BranchBank::expect_jump(const Estimate& prior, const Eigen::VectorXd& unit,
   prune();
 }
 
+void BranchBank::recall(std::vector<Estimate> known, const Eigen::VectorXd& probabilities) {
+  std::vector<std::size_t> others;
+  for (std::size_t i = 0; i < branches_.size(); ++i) {
+    if (branches_[i].born < segments_ || branches_[i].number <= recalled_ || recalled_ == 0) {
+      others.push_back(i);
+    }
+  }
+  branches_ = branches_.chosen(others);
+  recalled_ = births_;
+  const double before = branches_.log_evidence();
+  branches_.weigh(
+      Eigen::VectorXd::Constant(branches_.weights().size(), std::log1p(-std::min(probabilities.sum(), kAlmostAll))));
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    branches_.add({.estimate = std::move(known[i]), .number = ++births_, .born = segments_}, 0.0,
+                  before + std::log(probabilities[static_cast<Eigen::Index>(i)]));
+  }
+  branches_.weigh(Eigen::VectorXd::Zero(branches_.weights().size()));
+  known_ = births_;
+}
+
+std::vector<Estimate> BranchBank::jumps(const Estimate& known, const Eigen::VectorXd& unit) const {
+  std::vector<Estimate> all;
+  for (const JumpKind& kind : kinds_) {
+    for (const double size : kSizes) {
+      all.push_back(after_jump(known, kind, size, unit));
+    }
+  }
+  return all;
+}
+
 /// With this probability, slip jumped just before the next segment.
 void BranchBank::bear(const Estimate& prior, const Eigen::VectorXd& unit, double hazard) {
   const Estimate now = mixture();
   const double jumped = branches_.log_evidence() + std::log(hazard);
   branches_.weigh(Eigen::VectorXd::Constant(branches_.weights().size(), std::log1p(-hazard)));
-  const double share = std::log(static_cast<double>(kinds_.size() * kSizes.size()));
-  for (const JumpKind& kind : kinds_) {
-    for (const double size : kSizes) {
-      branches_.add({.estimate = after_jump(now, kind, size, unit), .number = ++births_, .born = segments_}, 0.0,
-                    jumped - share);
-    }
+  std::vector<Estimate> all = jumps(now, unit);
+  const double share = std::log(static_cast<double>(all.size()));
+  for (Estimate& each : all) {
+    branches_.add({.estimate = std::move(each), .number = ++births_, .born = segments_}, 0.0, jumped - share);
   }
   if (segments_ >= kForgetAfter) {
     branches_.add({.estimate = forgotten(now, prior, unit.size()), .number = ++births_, .born = segments_}, 0.0,

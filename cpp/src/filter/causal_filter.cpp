@@ -148,17 +148,38 @@ SurfaceSlip CausalFilter::surface() const {
   return surface;
 }
 
-void CausalFilter::go_on_with(const SurfaceSlip& surface, double drift) {
+/// The slip of a surface and the robot as it is known now.
+Estimate CausalFilter::on_surface(const SurfaceSlip& surface, double drift) const {
   const Eigen::Index robot = model_.size() - model_.slip_size();
   Estimate joint = joined_with(surface, state_.estimate.mean.tail(robot),
                                state_.estimate.covariance.bottomRightCorner(robot, robot));
   joint.covariance.diagonal().head(model_.slip_size()) += drift * surface.prior_std.cwiseAbs2();
-  state_.estimate = std::move(joint);
+  return joint;
+}
+
+void CausalFilter::go_on_with(const SurfaceSlip& surface, double drift) {
+  state_.estimate = on_surface(surface, drift);
   state_.noise_scale = surface.noise_scale;
   slip_std_ = surface.prior_std;
   speeds_ = surface.speeds;
   started_ = true;
   start_from_here();
+}
+
+void CausalFilter::recall(std::span<const RecalledSlip> known, double drift) {
+  if (!branches_.follow() || !started_ || known.empty()) {
+    return;
+  }
+  std::vector<Estimate> estimates;
+  Eigen::VectorXd probabilities(std::ssize(known));
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const SurfaceSlip& slip = known[i].slip;
+    const Estimate learned = on_surface(slip, drift);
+    estimates.push_back(change_slip_prior(learned, slip.prior_std, slip_std_).value_or(learned));
+    probabilities[static_cast<Eigen::Index>(i)] = known[i].probability;
+  }
+  branches_.recall(std::move(estimates), probabilities);
+  state_.estimate = branches_.mixture();
 }
 
 void CausalFilter::know_robot(const Estimate& robot) {

@@ -269,8 +269,7 @@ std::vector<SurfaceProbability> MotionHypotheses::probable_surfaces() const {
   if (!settings_.average.surfaces.remember) {
     return {};
   }
-  const ModelAverage& first = leader() == kCascaded ? present(cascaded_).slip() : joint_;
-  return surface_probabilities(bank_, first.trial());
+  return surface_probabilities(bank_);
 }
 
 }  // namespace slipwise

@@ -58,11 +58,11 @@ void ModelAverage::check_memory(const SurfaceMemory& memory) const {
 
 void ModelAverage::check_loaded(const ModelAverage& made) const {
   const Eigen::Index size = made.model_.size();
-  require((trial_ || filters_.size() == made.filters_.size()) && archive::same(model_, made.model_) &&
-              places_ == made.places_ && archive::same(settings_, made.settings_) && are_weights(filters_.weights()),
+  require(filters_.size() == made.filters_.size() && archive::same(model_, made.model_) && places_ == made.places_ &&
+              archive::same(settings_, made.settings_) && are_weights(filters_.weights()),
           "an average is of other bases or settings");
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    filters_[i].check_loaded(made.filters_[i % made.filters_.size()]);
+    filters_[i].check_loaded(made.filters_[i]);
   }
   require(0 <= change_.segments, "an average has found a change after the last segment");
   require(!learning_ || (learning_->updates.size() < filters_.size()), "an average has learned more than it has");
@@ -73,15 +73,17 @@ void ModelAverage::check_loaded(const ModelAverage& made) const {
   if (parting_) {
     check_memory(*parting_);
   }
-  if (!trial_) {
-    return;
-  }
-  const std::size_t sides = trial_->candidates.size();
-  require(sides > 0 && trial_->sides.size() == sides, "a trial of surfaces does not fit together");
-  for (const SurfaceSide& side : trial_->sides.keys()) {
-    side.evidence.check_loaded(model_);
-    side.bases.check_sizes(places_.size());
-    require(are_weights(side.bases.weights()), "a trial of surfaces has other bases");
+}
+
+void SurfaceTrial::check_loaded(const MotionModel& model, std::size_t surfaces) const {
+  const auto there = [&](const SurfaceCandidate& candidate) {
+    return candidate.kind != SurfaceCandidate::Kind::Known || candidate.place < surfaces;
+  };
+  require(!candidates_.empty() && evidence_.size() == candidates_.size() && are_weights(evidence_.weights()),
+          "a trial of surfaces does not fit together");
+  require(std::ranges::all_of(candidates_, there), "a trial is of a surface that is not there");
+  for (const SurfaceEvidence& evidence : evidence_.keys()) {
+    evidence.check_loaded(model);
   }
 }
 
@@ -99,13 +101,8 @@ void SurfaceBank::check_loaded(const SurfaceBank& made,
       }
     }
   }
-  for (const ModelAverage* average : averages) {
-    if (average != nullptr && average->trial()) {
-      for (const SurfaceCandidate& candidate : average->trial()->candidates) {
-        require(candidate.kind != SurfaceCandidate::Kind::Known || candidate.place < surfaces_.size(),
-                "a trial is of a surface that is not there");
-      }
-    }
+  if (trial_) {
+    trial_->check_loaded(averages[leader_]->model(), surfaces_.size());
   }
 }
 

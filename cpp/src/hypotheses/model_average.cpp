@@ -97,8 +97,7 @@ ModelAverage::~ModelAverage() = default;
 
 void ModelAverage::check_sizes() const {
   const std::size_t bases = places_.size();
-  bool fit =
-      bases > 0 && filters_.size() > 0 && filters_.size() == (trial_ ? trial_->candidates.size() : sides()) * bases;
+  bool fit = bases > 0 && filters_.size() > 0 && filters_.size() == sides() * bases;
   for (std::size_t i = 0; fit && i < filters_.size(); ++i) {
     fit = std::ssize(places_[i % bases]) == filters_[i].model().size() &&
           filters_[i].estimate().mean.size() == filters_[i].model().size();
@@ -147,10 +146,6 @@ void ModelAverage::update_next_filter() {
 }
 
 void ModelAverage::reweigh() {
-  if (trial_) {
-    reweigh_trial();
-    return;
-  }
   const std::vector<IekfUpdate>& updates = present(learning_).updates;
   update_ = updates[filters_.heaviest()];
   look_for_change();

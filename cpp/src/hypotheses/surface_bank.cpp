@@ -26,19 +26,6 @@ void for_each(const Averages& averages, const Use& use) {
   }
 }
 
-ReferenceSpeeds fastest(const ReferenceSpeeds& a, const ReferenceSpeeds& b) {
-  return {.v = std::max(a.v, b.v), .omega = std::max(a.omega, b.omega)};
-}
-
-/// What `more` and `less` know together; weights and noise are those of what was driven more.
-SurfaceMemory joined(const SurfaceMemory& more, const SurfaceMemory& less) {
-  SurfaceMemory both = more;
-  for (std::size_t basis = 0; basis < both.slips.size(); ++basis) {
-    both.slips[basis] = merged(both.slips[basis], less.slips[basis]);
-  }
-  return both;
-}
-
 }  // namespace
 
 SurfaceBank::SurfaceBank(const SurfaceSettings& settings) : settings_(settings) {}
@@ -128,21 +115,8 @@ void SurfaceBank::merge(std::size_t older_place, std::size_t newer_place) {
   if (numbered(older.name) && !numbered(newer.name)) {
     std::swap(older.name, newer.name);
   }
-  for (std::size_t k = 0; k < kAverages; ++k) {
-    auto& mine = older.memories[k];
-    const auto& its = newer.memories[k];
-    if (mine && its) {
-      mine = older.segments >= newer.segments ? joined(*mine, *its) : joined(*its, *mine);
-    }
-  }
   events_.push_back({.kind = SurfaceEvent::Kind::Merged, .name = older.name, .other = newer.name});
-  older.seconds += newer.seconds;
-  older.segments += newer.segments;
-  older.visits += newer.visits;
-  add_counts(newer.classes, older.classes);
-  older.used = std::max(older.used, newer.used);
-  older.last_seen = std::max(older.last_seen, newer.last_seen);
-  older.speeds = fastest(older.speeds, newer.speeds);
+  take_in(older, newer);
   surfaces_.erase(surfaces_.begin() + static_cast<std::ptrdiff_t>(newer_place));
   if (present_ && *present_ == newer_place) {
     present_ = older_place;
@@ -162,7 +136,7 @@ void SurfaceBank::know(std::vector<Surface> surfaces, const LabelCounts& labels)
 
 std::vector<std::string> SurfaceBank::add(const Averages& averages, const DisturbanceModel& law,
                                           std::vector<Surface> others, std::size_t leader) {
-  leader_ = leader;
+  leader_ = trial_ ? leader_ : leader;
   std::vector<std::string> names;
   for (Surface& other : others) {
     const std::string wanted = other.name;
@@ -187,51 +161,52 @@ void SurfaceBank::drop(std::size_t place) {
   }
 }
 
-std::vector<SurfaceCandidate> SurfaceBank::candidates_of_start() const {
-  std::vector<SurfaceCandidate> candidates;
-  const double each = (1.0 - settings_.unknown) / static_cast<double>(surfaces_.size());
-  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    candidates.push_back({.kind = Kind::Known, .place = i, .prior = each});
-  }
-  candidates.push_back({.kind = Kind::New, .prior = settings_.unknown});
-  return candidates;
-}
-
-std::vector<SurfaceCandidate> SurfaceBank::candidates_of_change() const {
-  std::vector<SurfaceCandidate> candidates{{.kind = Kind::Present, .prior = 1.0 - settings_.changed}};
-  std::vector<SurfaceCandidate> others{{.kind = Kind::Changed}, {.kind = Kind::New}};
-  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    if (!present_ || *present_ != i) {
-      others.push_back({.kind = Kind::Known, .place = i});
-    }
-  }
-  for (SurfaceCandidate& each : others) {
-    each.prior = settings_.changed / static_cast<double>(others.size());
-    candidates.push_back(each);
-  }
-  return candidates;
-}
-
 void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
                        double since) {
   weigh_by_label(candidates);
   heard_in_trial_.clear();
   heard_factors_.assign(candidates.size(), 0.0);
+  for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(since); });
+  const ModelAverage& leader = *averages[leader_];
+  std::vector<SurfaceMemory> known;
+  for (const Surface& surface : surfaces_) {  // an average that began later has not learned the older ones
+    known.push_back(surface.memories[leader_] ? *surface.memories[leader_] : leader.remember());
+  }
+  trial_.emplace(std::move(candidates), known, leader, law, since);
+}
+
+/// Slip may be that of the candidates that are known. The present one is what goes on.
+void SurfaceBank::recall(const Averages& averages) const {
+  const SurfaceTrial& trial = slipwise::present(trial_);
   for_each(averages, [&](std::size_t i, ModelAverage& average) {
-    std::vector<SurfaceMemory> known;
-    for (const Surface& surface : surfaces_) {  // an average that began later has not learned the older ones
-      known.push_back(surface.memories[i] ? *surface.memories[i] : average.remember());
+    std::vector<RecalledSurface> known;
+    for (std::size_t k = 0; k < trial.candidates().size(); ++k) {
+      const SurfaceCandidate& each = trial.candidates()[k];
+      if (each.kind == Kind::Known && each.place != present_ && surfaces_[each.place].memories[i]) {
+        known.push_back({.memory = *surfaces_[each.place].memories[i],
+                         .probability = trial.probabilities()[static_cast<Eigen::Index>(k)]});
+      }
     }
-    average.open_trial(candidates, known, law, since);
+    average.recall(known);
   });
+}
+
+/// What is said before any segment speaks counts for predictions too.
+void SurfaceBank::weigh_trial(const Averages& averages, const Eigen::VectorXd& log_factors) {
+  slipwise::present(trial_).weigh(log_factors);
+  if (trial_->segments() == 0) {
+    recall(averages);
+  }
 }
 
 void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& law, const DriveStart& start) {
   if (!settings_.remember) {
     return;
   }
-  if (averages[leader_]->trial()) {
-    settle(averages, leader_, law, true);
+  let_go();
+  if (trial_) {
+    settle(averages, law, true);
+    let_go();
   }
   keep_present(averages, law);
   date_ = start.date;
@@ -240,14 +215,16 @@ void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& 
   heard_.clear();
   doubted_for_.clear();
   if (!surfaces_.empty()) {
-    open(averages, law, candidates_of_start(), kNow);
+    open(averages, law, candidates_of_start(surfaces_.size(), settings_), kNow);
+    recall(averages);
     present_.reset();
   }
 }
 
 /// A label says nothing new where it is the one that speaks already, or names the surface that is driven on.
 void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, const std::string& label) {
-  const bool open_already = settings_.remember && averages[leader_]->trial().has_value();
+  let_go();
+  const bool open_already = trial_.has_value();
   const std::string& named = open_already ? label_ : (present_ ? surfaces_[*present_].name : wanted_);
   const bool same = !label.empty() && label == named;
   if (!settings_.remember || same || (open_already && label.empty())) {
@@ -255,18 +232,20 @@ void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, con
   }
   if (open_already) {
     label_ = label;
-    for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) {
-      if (average.trial()) {
-        const Eigen::ArrayXd factors = label_factors(slipwise::present(average.trial()).candidates);
-        average.weigh_trial(factors.log());
-      }
-    });
+    weigh_trial(averages, label_factors(trial_->candidates()).log());
     return;
   }
   keep_present(averages, law);
   label_ = label;
+  suspect(averages, law);
+}
+
+/// Something says that the surface may be another from now on.
+void SurfaceBank::suspect(const Averages& averages, const DisturbanceModel& law) {
+  for_each(averages, [](std::size_t /*i*/, ModelAverage& average) { average.expect_change(); });
   if (!surfaces_.empty()) {
-    open(averages, law, candidates_of_change(), kNow);
+    open(averages, law, candidates_of_change(surfaces_.size(), present_, settings_), kNow);
+    recall(averages);
   }
 }
 
@@ -274,24 +253,55 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
   if (!settings_.remember) {
     return false;
   }
-  leader_ = leader;
-  const bool others = surfaces_.size() > (present_ ? 1 : 0);
   const auto changed_since = averages[leader]->take_change();
-  if (averages[leader]->trial()) {
-    return settle(averages, leader, law, false);
+  if (trial_) {
+    trial_->follow(*averages[leader_]);
+    if (!held_) {
+      return settle(averages, law, false);
+    }
+    if (!changed_since) {
+      return doubt();
+    }
+    let_go();
   }
+  leader_ = leader;
   if (!changed_since) {
     return false;
   }
-  if (others) {
+  if (surfaces_.size() > (present_ ? 1 : 0)) {
     label_.clear();
-    open(averages, law, candidates_of_change(), *changed_since);
-    return true;
+    open(averages, law, candidates_of_change(surfaces_.size(), present_, settings_), *changed_since);
+    return false;
   }
   for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(*changed_since); });
   leave_present(averages, law);
   enter_new();
   return false;
+}
+
+/// A surface that was recalled turns out to be another, which is like it but for a jump. Whether it did.
+bool SurfaceBank::doubt() {
+  const double another = slipwise::present(trial_).probabilities()[1];
+  const int segments = trial_->segments();
+  if (another >= 1.0 - settings_.false_alarm) {
+    --surfaces_[slipwise::present(present_)].visits;
+    let_go();
+    wanted_ = !label_.empty() && !taken(label_) ? label_ : "";
+    take({.kind = Kind::New}, "", another, segments);
+    return true;
+  }
+  if (segments >= settings_.trial) {
+    let_go();
+  }
+  return false;
+}
+
+/// What was recalled is no longer doubted.
+void SurfaceBank::let_go() {
+  if (held_) {
+    trial_.reset();
+    held_ = false;
+  }
 }
 
 /// One that has no entry yet gets one when it is left.
@@ -312,36 +322,41 @@ void SurfaceBank::drop_least_used(std::size_t most) {
   }
 }
 
-/// Takes a candidate where it is certain enough, or time is over, or at once. Whether one was taken.
-bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const DisturbanceModel& law, bool at_once) {
-  const SurfaceTrial& trial = slipwise::present(averages[leader]->trial());
-  Eigen::Index likeliest = 0;
-  double probability = trial.probabilities().maxCoeff(&likeliest);
-  const bool sure = probability >= 1.0 - settings_.false_alarm && trial.segments >= settings_.soonest;
-  if (!at_once && !sure && trial.segments < settings_.trial) {
+/// Takes a candidate where it is certain enough, or time is over, or at once. Whether one was taken. A known surface is
+/// doubted until time is over.
+bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, bool at_once) {
+  const SurfaceTrial& trial = slipwise::present(trial_);
+  const auto& candidates = trial.candidates();
+  const bool at_start = candidates.front().kind != Kind::Present;
+  const SurfaceDecision decision = trial.decide(label_factors(candidates), settings_);
+  if (!at_once && !decision.sure && trial.segments() < settings_.trial) {
     return false;
   }
-  const bool at_start = trial.candidates.front().kind != Kind::Present;
-  const SurfaceCandidate& most = trial.candidates[static_cast<std::size_t>(likeliest)];
-  const bool named = most.kind == Kind::Known && surfaces_[most.place].name == label_;
-  if (!sure && !(at_start && named)) {  // a suspicion that was not confirmed; or kept apart until it is known better
-    likeliest = at_start ? std::ssize(trial.candidates) - 1 : 0;
-    probability = trial.probabilities()[likeliest];
+  const bool another = decision.another > decision.probability;
+  SurfaceCandidate taken = candidates[decision.known];
+  const bool named = taken.kind == Kind::Known && surfaces_[taken.place].name == label_;
+  if (decision.sure ? another : at_start && !(named && !another)) {  // or kept apart until it is known better
+    taken = {.kind = Kind::New};
+  } else if (!decision.sure && !at_start) {  // a suspicion that was not confirmed
+    taken = candidates.front();
   }
-  const auto taken = static_cast<std::size_t>(likeliest);
-  const SurfaceCandidate candidate = trial.candidates[taken];
-  const int segments = trial.segments;
-  const std::string recalled = candidate.kind == Kind::Known ? surfaces_[candidate.place].name : "";
-  for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) {
-    if (average.trial()) {
-      average.settle(taken);
-    }
-  });
-  if (candidate.kind != Kind::Present && !at_start) {
+  const double probability = taken.known() ? decision.probability : decision.another;
+  const int segments = trial.segments();
+  const std::string recalled = taken.kind == Kind::Known ? surfaces_[taken.place].name : "";
+  if (taken.kind == Kind::Known) {
+    trial_->hold(decision.known);
+    held_ = true;
+  } else {
+    trial_.reset();
+  }
+  if (taken.kind != Kind::Present && !at_start) {
     leave_present(averages, law);
   }
-  hear_on(candidate.kind);
-  take(candidate, judge_label(candidate, recalled, sure), probability, segments);
+  hear_on(taken.kind);
+  take(taken, judge_label(taken, recalled, decision.sure), probability, segments);
+  if (!present_) {
+    let_go();
+  }
   return true;
 }
 

@@ -27,14 +27,22 @@ SurfaceEvidence::SurfaceEvidence(const MotionModel& model, SurfacePosterior post
   const DisturbedTerms terms = disturbed_terms(model, posterior_.prior_std);
   places_ = terms.places;
   const Eigen::Index size = model.size();
+  std::vector<Estimate> starts = std::exchange(posterior_.jumped, {});
+  if (starts.empty()) {
+    starts.push_back(posterior_.estimate);
+  }
   const auto consider = [&](const SlipDisturbance& disturbance, double weight) {
-    Under under{.time_constant = disturbance.time_constant,
-                .nominal = terms.variances(disturbance),
-                .state = Eigen::VectorXd::Zero(size + terms.size()),
-                .covariance = Eigen::MatrixXd::Zero(size + terms.size(), size + terms.size())};
-    under.covariance.topLeftCorner(size, size) = posterior_.estimate.covariance;
-    under.covariance.diagonal().tail(terms.size()) = under.nominal;
-    under_.add(std::move(under), weight, std::log(weight));
+    for (const Estimate& start : starts) {
+      Under under{.time_constant = disturbance.time_constant,
+                  .nominal = terms.variances(disturbance),
+                  .state = Eigen::VectorXd::Zero(size + terms.size()),
+                  .covariance = Eigen::MatrixXd::Zero(size + terms.size(), size + terms.size())};
+      under.state.head(size) = start.mean - posterior_.estimate.mean;
+      under.covariance.topLeftCorner(size, size) = start.covariance;
+      under.covariance.diagonal().tail(terms.size()) = under.nominal;
+      const double share = weight / static_cast<double>(starts.size());
+      under_.add(std::move(under), share, std::log(share));
+    }
   };
   for (std::size_t i = 0; i < law.candidates.size(); ++i) {
     const double weight = law.weights[static_cast<Eigen::Index>(i)];

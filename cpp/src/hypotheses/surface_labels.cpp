@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names of surfaces, by labels and by what sensors say of the terrain: odds of the surfaces that bore them before.
 #include <algorithm>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -43,21 +42,24 @@ std::string SurfaceBank::new_name() {
 }
 
 /// How likely the label is on each candidate, by what labels have been worth: it names the surface, or another one. A
-/// label that names no surface speaks for a new one.
+/// label that names no surface speaks for those without a name of their own.
 Eigen::ArrayXd SurfaceBank::label_factors(const std::vector<SurfaceCandidate>& candidates) const {
   const auto count = std::ssize(candidates);
   if (label_.empty() || count < 2) {
     return Eigen::ArrayXd::Ones(count);
   }
-  const auto is_named = [&](const SurfaceCandidate& each) {
-    return (each.kind == Kind::Known && surfaces_[each.place].name == label_) ||
-           (each.kind == Kind::Present && present_ && surfaces_[*present_].name == label_);
+  const auto name_of = [&](const SurfaceCandidate& each) -> std::string {
+    if (each.kind == Kind::Known) {
+      return surfaces_[each.place].name;
+    }
+    return each.kind == Kind::Present && present_ ? surfaces_[*present_].name : "";
   };
-  const bool known = std::ranges::any_of(candidates, is_named);
+  const bool known = std::ranges::any_of(candidates, [&](const auto& each) { return name_of(each) == label_; });
   Eigen::ArrayXd factors(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const SurfaceCandidate& each = candidates[static_cast<std::size_t>(i)];
-    const bool named = known ? is_named(each) : each.kind == Kind::New;
+    const std::string name = name_of(each);
+    const bool named = known ? name == label_ : !each.known() || (each.kind == Kind::Known && numbered(name));
     factors[i] = named ? label_reliability() : (1.0 - label_reliability()) / static_cast<double>(count - 1);
   }
   return factors;
@@ -126,16 +128,12 @@ Eigen::ArrayXd SurfaceBank::class_likelihoods(const std::vector<SurfaceCandidate
 
 /// The mean of all that was said is one cue: what it is worth now replaces what it was worth before.
 void SurfaceBank::weigh_by_classes(const Averages& averages) {
-  const auto& trial = slipwise::present(averages[leader_]->trial());
-  const Eigen::ArrayXd now = class_likelihoods(trial.candidates, shares_of(heard_in_trial_)).log();
+  const SurfaceTrial& trial = slipwise::present(trial_);
+  const Eigen::ArrayXd now = class_likelihoods(trial.candidates(), shares_of(heard_in_trial_)).log();
   const Eigen::Map<Eigen::ArrayXd> before(heard_factors_.data(), std::ssize(heard_factors_));
   const Eigen::VectorXd change = now - before;
   std::ranges::copy(now, heard_factors_.begin());
-  for (ModelAverage* average : averages) {
-    if (average != nullptr && average->trial()) {
-      average->weigh_trial(change);
-    }
-  }
+  weigh_trial(averages, change);
 }
 
 void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, const TerrainAnswer& answer) {
@@ -145,8 +143,9 @@ void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, co
   }
   const ClassCounts said = even_odds(answer);
   const auto likeliest = std::ranges::max_element(said, {}, [](const auto& each) { return each.second; });
-  if (!averages[leader_]->trial()) {
-    const std::vector<SurfaceCandidate> candidates = candidates_of_change();
+  let_go();
+  if (!trial_) {
+    const std::vector<SurfaceCandidate> candidates = candidates_of_change(surfaces_.size(), present_, settings_);
     const Eigen::ArrayXd likelihoods = class_likelihoods(candidates, said);
     const bool others = surfaces_.size() > (present_ ? 1 : 0);
     if (!others || doubted_for_ == likeliest->first || likelihoods.maxCoeff() < kFarBetter * likelihoods[0]) {
@@ -156,7 +155,7 @@ void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, co
     keep_present(averages, law);
     label_.clear();
     doubted_for_ = likeliest->first;
-    open(averages, law, candidates_of_change(), std::numeric_limits<double>::infinity());
+    suspect(averages, law);
   }
   add_counts(said, heard_in_trial_);
   weigh_by_classes(averages);

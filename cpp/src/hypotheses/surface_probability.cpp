@@ -19,15 +19,15 @@ std::string name_of(const SurfaceBank& bank, const SurfaceCandidate& candidate) 
 
 }  // namespace
 
-std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank,
-                                                      const std::optional<SurfaceTrial>& trial) {
+std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank) {
+  const std::optional<SurfaceTrial>& trial = bank.trial();
   if (!trial) {
     return {{.name = bank.present() ? bank.surfaces()[*bank.present()].name : "", .probability = 1.0}};
   }
   std::vector<SurfaceProbability> found;
   const Eigen::VectorXd probabilities = trial->probabilities();
-  for (std::size_t i = 0; i < trial->candidates.size(); ++i) {
-    const std::string name = name_of(bank, trial->candidates[i]);
+  for (std::size_t i = 0; i < trial->candidates().size(); ++i) {
+    const std::string name = name_of(bank, trial->candidates()[i]);
     auto place = std::ranges::find(found, name, &SurfaceProbability::name);
     if (place == found.end()) {
       place = found.insert(place, {.name = name, .probability = 0.0});

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "simulated_drive.hpp"
@@ -18,13 +19,16 @@ inline ModelAverage remembering_average() {
   return {"auto", {{"none", {}, {}, {}}, named_basis("edd-2")}, {}, {}, settings};
 }
 
-/// Learns some segments of 2 s on a surface that takes a part of the turns.
-inline void drive_on_surface(ModelAverage& average, double yaw_slip, std::uint64_t seed, std::size_t windows = 40) {
+/// Learns some segments of 2 s on a surface that takes a part of the turns; `learned` is called after each.
+inline void drive_on_surface(
+    ModelAverage& average, double yaw_slip, std::uint64_t seed, std::size_t windows = 40,
+    const std::function<void()>& learned = [] {}) {
   const MotionNoise noise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
   const auto drive = simulate_drive({named_basis("edd-2"), {}}, Eigen::Vector2d(-0.05, yaw_slip),
                                     {.seed = seed, .windows = windows, .window = 2.0, .noise = noise});
   for (const Segment& segment : drive.segments) {
     average.learn(drive.inputs, segment);
+    learned();
   }
 }
 

@@ -4,11 +4,13 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "hypotheses/surfaces_learned.hpp"
+#include "slipwise/hypotheses/surface_probability.hpp"
 #include "slipwise/linear/present.hpp"
 
 namespace slipwise {
@@ -53,9 +55,9 @@ TEST_CASE("at a start every surface competes beside a new one, and a label makes
     bank.know(known.surfaces, {});
     bank.start_drive(known.averages(), kWhiteSlip, {.label = label, .date = ""});
     CHECK_FALSE(bank.present());
-    const SurfaceTrial& trial = present(known.average.trial());
-    REQUIRE(trial.candidates.size() == 3);
-    CHECK(trial.probabilities()[2] <= 0.2 + 1e-12);
+    const SurfaceTrial& trial = present(bank.trial());
+    REQUIRE(trial.candidates().size() == 5);  // each, what is like each, and a new one
+    CHECK(trial.probabilities()[1] + trial.probabilities()[3] + trial.probabilities()[4] <= 0.2 + 1e-12);
     CHECK((trial.probabilities()[0] > 0.5) == !label.empty());
   }
 }
@@ -66,8 +68,10 @@ TEST_CASE("the surface that is driven on is recalled, its visit counted, and a l
   bank.know(known.surfaces, {});
   const double before = bank.label_reliability();
   bank.start_drive(known.averages(), kWhiteSlip, {.label = "sand", .date = "2026-01-01"});
-  tests::drive_on_surface(known.average, -0.5, 76, 8);
-  CHECK(bank.consider(known.averages(), kJoint, kWhiteSlip));
+  int taken = 0;
+  tests::drive_on_surface(known.average, -0.5, 76, 8,
+                          [&] { taken += bank.consider(known.averages(), kJoint, kWhiteSlip) ? 1 : 0; });
+  CHECK(taken == 1);
   REQUIRE(bank.present());
   CHECK(bank.surfaces()[*bank.present()].name == "sand");
   CHECK(bank.surfaces()[*bank.present()].visits == 2);
@@ -76,6 +80,37 @@ TEST_CASE("the surface that is driven on is recalled, its visit counted, and a l
   REQUIRE(events.size() == 1);
   CHECK(events.front().kind == SurfaceEvent::Kind::Recalled);
   CHECK(bank.take_events().empty());
+}
+
+TEST_CASE(
+    "where nothing competes the surface under the robot is certain, and candidates without a name count together") {
+  Known known({{"hall", -0.1}, {"sand", -0.5}});
+  SurfaceBank bank(remembering());
+  REQUIRE(surface_probabilities(bank).size() == 1);
+  CHECK(surface_probabilities(bank).front().name.empty());
+  CHECK(surface_probabilities(bank).front().probability == 1.0);
+  bank.know(known.surfaces, {});
+  bank.cue(known.averages(), kWhiteSlip, "ice");  // the present one, what became of it, and a new one have no name
+  const auto found = surface_probabilities(bank);
+  REQUIRE(found.size() == 3);
+  CHECK(found[0].name.empty());
+  CHECK(found[0].probability + found[1].probability + found[2].probability == doctest::Approx(1.0));
+  CHECK(present(bank.trial()).candidates().size() == 7);
+}
+
+TEST_CASE("surfaces that come back are predicted from the first segments on, and one that does not costs nothing") {
+  for (const double yaw_slip : {-0.5, -0.1}) {
+    Known known({{"hall", -0.1}, {"sand", -0.5}});
+    ModelAverage goes_on = known.average;
+    SurfaceBank bank(remembering());
+    bank.know(known.surfaces, {});
+    bank.start_drive(known.averages(), kWhiteSlip, {});
+    tests::drive_on_surface(known.average, yaw_slip, 78, 3);
+    tests::drive_on_surface(goes_on, yaw_slip, 78, 3);
+    const double recalled = std::abs(known.average.state().estimate.mean[1] - yaw_slip);
+    CHECK(recalled < 0.03);
+    CHECK(recalled < std::abs(goes_on.state().estimate.mean[1] - yaw_slip) + 0.01);
+  }
 }
 
 TEST_CASE("what is added is merged with what it cannot be told from, and a name that is taken gets a number") {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces that compete: their segments decide, and learning goes on from the one that is taken.
+// Surfaces that compete: their segments decide.
+#include "slipwise/hypotheses/surface_trial.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -24,28 +26,23 @@ const std::vector<SurfaceCandidate> kAny{{.kind = Kind::Known, .place = 0, .prio
                                          {.kind = Kind::New, .prior = 0.2}};
 
 TEST_CASE("before any segment speaks, candidates have their priors, and log factors multiply their odds") {
-  ModelAverage average = remembering_average();
-  average.open_trial(kAny, surface_memories({-0.1, -0.5}), kWhiteSlip, kNow);
-  const Eigen::VectorXd first = present(average.trial()).probabilities();
-  CHECK(first.isApprox(Eigen::Vector3d(0.4, 0.4, 0.2)));
-  average.weigh_trial(Eigen::Vector3d(0.0, std::log(4.0), std::log(2.0)));
-  CHECK(present(average.trial()).probabilities().isApprox(Eigen::Vector3d(1.0, 4.0, 1.0) / 6.0, 1e-9));
+  SurfaceTrial trial(kAny, surface_memories({-0.1, -0.5}), remembering_average(), kWhiteSlip, kNow);
+  CHECK(trial.probabilities().isApprox(Eigen::Vector3d(0.4, 0.4, 0.2)));
+  trial.weigh(Eigen::Vector3d(0.0, std::log(4.0), std::log(2.0)));
+  CHECK(trial.probabilities().isApprox(Eigen::Vector3d(1.0, 4.0, 1.0) / 6.0, 1e-9));
 }
 
-TEST_CASE("the surface that is driven on wins, known or new, and its estimate is gone on from") {
+TEST_CASE("the surface that is driven on wins, known or new, and each segment speaks once") {
   const auto known = surface_memories({-0.1, -0.5});
   for (const auto& [slip, winner] : {std::pair{-0.1, 0}, {-0.5, 1}, {0.4, 2}}) {
     ModelAverage average = remembering_average();
-    average.open_trial(kAny, known, kWhiteSlip, kNow);
-    CHECK(average.state().weights.sum() == doctest::Approx(1.0));
-    drive_on_surface(average, slip, 71, 6);
-    const SurfaceTrial& trial = present(average.trial());
-    CHECK(trial.segments == 6);
+    SurfaceTrial trial(kAny, known, average, kWhiteSlip, kNow);
+    drive_on_surface(average, slip, 71, 6, [&] {
+      trial.follow(average);
+      trial.follow(average);
+    });
+    CHECK(trial.segments() == 6);
     CHECK(trial.probabilities()[winner] > 0.99);
-    average.settle(static_cast<std::size_t>(winner));
-    CHECK_FALSE(average.trial());
-    CHECK(average.state().weights.size() == 2);
-    CHECK(average.state().estimate.mean[1] == doctest::Approx(slip).epsilon(0.15));
   }
 }
 

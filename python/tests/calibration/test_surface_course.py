@@ -24,7 +24,8 @@ def test_probabilities_of_each_window_add_up_and_changes_are_dated() -> None:
     assert course is not None
     assert course.t[0] <= recalled.t <= course.t[-1]
     sure = course.probability[course.t >= recalled.t, course.names.index("surface 1")]
-    assert (sure == 1.0).all()
+    assert (sure >= 0.98).all()  # as long as another that is like it competes
+    assert sure[-1] == 1.0
 
 
 def test_without_a_memory_there_is_no_course() -> None:

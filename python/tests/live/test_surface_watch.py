@@ -74,7 +74,8 @@ def test_a_log_that_is_replayed_gives_the_model_of_calibrate_with_a_memory() -> 
 def test_the_surface_is_said_with_its_probability_and_what_is_remembered(floors: Path) -> None:
     _, transport, said = run_remembering(samples_on(LOOSE, 8), model=str(floors))
     assert said[0].probability < 1.0
-    assert (said[-1].name, said[-1].probability) == ("sand", 1.0)
+    assert said[-1].name == "sand"
+    assert 0.98 < said[-1].probability < 1.0  # one that is like it competes still
     assert abs(sum(value for _, value in said[0].probabilities) - 1.0) < 1e-9
     assert [each.name for each in said[-1].remembered] == ["hall", "sand"]
     assert surface_content(said[-1])["surface"] == "sand"

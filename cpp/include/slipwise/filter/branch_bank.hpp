@@ -73,6 +73,11 @@ class BranchBank {
   void restart(const Estimate& known);
   /// Slip jumped just now, with this probability.
   void expect_jump(const Estimate& prior, const Eigen::VectorXd& unit, double probability);
+  /// What is known where slip jumped just now, of each kind and size, as likely as each other.
+  std::vector<Estimate> jumps(const Estimate& known, const Eigen::VectorXd& unit) const;
+  /// Slip may have become each of these just now, with these probabilities, which replace those of a recall since which
+  /// nothing was learned. It is no change of terrain that was found.
+  void recall(std::vector<Estimate> known, const Eigen::VectorXd& probabilities);
   /// What the branch knows that led last is known better, if it is still there.
   void correct_leader(const Estimate& better);
   /// The same data under another prior of slip; false if that of the heaviest branch cannot be changed. Others stay
@@ -90,7 +95,7 @@ class BranchBank {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.kinds_, self.settings_, self.branches_, self.births_, self.segments_, self.led_by_, self.known_);
-    a(self.held_, self.alike_, self.change_, self.leader_changed_);
+    a(self.recalled_, self.held_, self.alike_, self.change_, self.leader_changed_);
   }
 
  private:
@@ -114,6 +119,7 @@ class BranchBank {
   std::size_t segments_ = 0;   ///< learned since the start
   std::size_t led_by_ = 0;     ///< number of the branch that leads
   std::size_t known_ = 0;      ///< births until the terrain counted as changed
+  std::size_t recalled_ = 0;   ///< births until the last recall
   std::size_t held_ = 0;       ///< segments for which branches that were born since have more than half of the weight
   std::vector<double> alike_;  ///< how many segments counted as one, with each of late
   SlipChange change_;

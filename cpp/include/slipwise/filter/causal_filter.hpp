@@ -57,6 +57,8 @@ class CausalFilter {
   /// Goes on with the slip of a surface; what is the robot's stays as learned. `drift` of its prior variance is added:
   /// no surface is quite as it was.
   void go_on_with(const SurfaceSlip& surface, double drift);
+  /// Slip may have become that of a surface just now; `drift` as above. Where slip never jumps, it stays as it is.
+  void recall(std::span<const RecalledSlip> known, double drift);
   /// The robot is as it was learned before: `robot` are the parameters after those of slip.
   void know_robot(const Estimate& robot);
   /// The prior of a surface that was never driven, from those that were (derivations/surfaces.md).
@@ -88,6 +90,7 @@ class CausalFilter {
   }
 
  private:
+  Estimate on_surface(const SurfaceSlip& surface, double drift) const;
   void follow(const ReferenceSpeeds& speeds);
   Estimate prior(const ReferenceSpeeds& speeds) const;
   Eigen::VectorXd unit() const;

@@ -24,6 +24,12 @@ struct SurfaceSlip {
   NoiseScale noise_scale = NoiseScale();
 };
 
+/// A surface that slip may be that of from now on.
+struct RecalledSlip {
+  SurfaceSlip slip;
+  double probability;
+};
+
 /// Splits a joint posterior whose first `prior_std.size()` parameters are slip; `inflation` [parameters] are factors of
 /// the standard deviations that the reported covariance has beside this one.
 SurfaceSlip surface_of(const Estimate& estimate, const Eigen::VectorXd& inflation, const Eigen::VectorXd& prior_std,

@@ -15,6 +15,7 @@
 #include "slipwise/filter/causal_filter.hpp"
 #include "slipwise/filter/driven_speeds.hpp"
 #include "slipwise/filter/hypothesis_bank.hpp"
+#include "slipwise/hypotheses/surface_evidence.hpp"
 #include "slipwise/hypotheses/surface_memory.hpp"
 
 namespace slipwise {
@@ -40,6 +41,14 @@ struct AverageState {
 /// the mean parameters over the union of the terms, with the spread in the covariance.
 class ModelAverage {
  public:
+  /// One of the last segments, and what was known before it.
+  struct Recent {
+    InputHistory inputs;
+    Segment segment;
+    SurfaceMemory memory;
+    AverageState state;
+  };
+
   ModelAverage();
   /// \throws std::invalid_argument when there is no basis.
   ModelAverage(std::string name, const std::vector<Basis>& bases, ActuatorParameters learned,
@@ -73,18 +82,9 @@ class ModelAverage {
 
   /// The estimate of the surface that is driven on, or of the likeliest.
   SurfaceMemory remember() const;
-  /// Surfaces compete to be the one that is driven on, `candidates` with their probabilities, [0] the one before or one
-  /// of `known`; those but the present one learn the segments from `since` [s] on, which speak first. Predictions are
-  /// the mixture until one is taken. What was known of the present surface before `since` is kept as `parting`.
-  void open_trial(const std::vector<SurfaceCandidate>& candidates, std::span<const SurfaceMemory> known,
-                  const DisturbanceModel& law, double since);
-  /// Weights the candidates from outside: log factors of their odds, which count from now on.
-  void weigh_trial(const Eigen::VectorXd& log_factors);
-  /// What competes now; empty if one surface is driven on.
-  const std::optional<SurfaceTrial>& trial() const { return trial_; }
-  /// Takes one of the candidates: learning goes on from its posterior.
-  void settle(std::size_t candidate);
-  /// The estimate of the surface before the last trial, without its last segments that were on another.
+  /// Slip may have become that of a surface just now, with this probability each; together less than 1.
+  void recall(std::span<const RecalledSurface> known);
+  /// The estimate of a surface at its parting, without its last segments that were on another.
   const std::optional<SurfaceMemory>& parting() const { return parting_; }
   /// What was known before the segments from `since` [s] on.
   void mark_parting(double since);
@@ -94,8 +94,16 @@ class ModelAverage {
   void start_run() { recent_.clear(); }
   /// Log odds that a trial would give one of two surfaces against the other, were it the one and driven as of late.
   double apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const;
-  /// The estimate while a surface is driven on.
-  AverageState state_on(const SurfaceMemory& surface) const;
+  /// The estimate while a surface is driven on, with so much `drift` since it was left.
+  AverageState state_on(const SurfaceMemory& surface, double drift = 0.0) const;
+  /// What is known of a candidate before the segments from `since` [s] on; `known` are the memories of the surfaces.
+  SurfacePosterior posterior_on(const SurfaceCandidate& candidate, std::span<const SurfaceMemory> known,
+                                double since) const;
+  /// The last segments of the run, where surfaces are remembered.
+  const std::deque<Recent>& recent() const { return recent_; }
+  /// The place of the first of them from `since` [s] on.
+  std::size_t recent_since(double since) const;
+  const SurfaceSettings& surface_settings() const { return settings_.surfaces; }
   /// The memory of all bases from one of some: of the others, the present estimate is remembered. `same_robot` says
   /// whether it goes with the parameters of this robot, as this average has them.
   /// \throws std::invalid_argument when a basis has another number of terms there.
@@ -121,7 +129,7 @@ class ModelAverage {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.filters_, self.places_, self.settings_, self.speeds_, self.change_, self.learning_);
-    a(self.update_, self.recent_, self.probes_, self.trial_, self.parting_, self.changed_since_);
+    a(self.update_, self.recent_, self.probes_, self.parting_, self.changed_since_);
     self.check_sizes();
   }
 
@@ -133,21 +141,7 @@ class ModelAverage {
     std::vector<IekfUpdate> updates = {};
   };
 
-  /// One of the last segments, and what was known before it.
-  struct Recent {
-    InputHistory inputs;
-    Segment segment;
-    SurfaceMemory memory;
-    AverageState state;
-  };
-
-  /// One candidate of a trial as it begins.
-  struct Side {
-    HypothesisBank<CausalFilter> filters;
-    AverageState state;
-  };
-
-  /// \throws std::invalid_argument unless there are as many filters and places as bases and candidates.
+  /// \throws std::invalid_argument unless there are as many filters and places as bases and laws of a force.
   void check_sizes() const;
   Eigen::VectorXd scores_of(const Eigen::VectorXd& weights, std::span<const IekfUpdate> updates) const;
   void update_next_filter();
@@ -157,29 +151,23 @@ class ModelAverage {
   Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
   AverageState state_of(std::span<const CausalFilter> filters, const Eigen::VectorXd& weights) const;
-  /// Filters of each basis: candidates of a trial, or laws of a force.
+  /// Filters of each basis: laws of a force.
   std::size_t sides() const { return filters_.size() / places_.size(); }
   void note_recent();
-  std::size_t recent_since(double since) const;
   HypothesisBank<CausalFilter> filters_on(const SurfaceMemory& surface, double drift) const;
   SurfaceMemory new_surface(std::span<const SurfaceMemory> known, const SurfaceMemory& present) const;
-  Side side_of(const SurfaceCandidate& candidate, std::span<const SurfaceMemory> known, std::size_t first) const;
-  void learn_on(Side& side, const Recent& recent) const;
-  void reweigh_trial();
-  void mix_trial();
   SurfacePosterior posterior_of(const AverageState& state) const;
 
   MotionModel model_;
-  HypothesisBank<CausalFilter> filters_;  ///< one per basis, for each law of a force, in a trial each candidate
+  HypothesisBank<CausalFilter> filters_;           ///< one per basis, for each law of a force
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
   DrivenSpeeds speeds_;
   SlipChange change_;
   std::optional<Learning> learning_;
   IekfUpdate update_ = {};
-  std::deque<Recent> recent_;  ///< the last segments of the run, where surfaces are remembered
+  std::deque<Recent> recent_;
   std::deque<Recent> probes_;  ///< some of those before, by which surfaces are compared
-  std::optional<SurfaceTrial> trial_;
   std::optional<SurfaceMemory> parting_;
   std::optional<double> changed_since_;  ///< [s], of a change that nobody took
 };

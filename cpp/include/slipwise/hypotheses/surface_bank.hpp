@@ -6,31 +6,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "slipwise/filter/driven_speeds.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/hypotheses/surface.hpp"
 #include "slipwise/hypotheses/surface_classes.hpp"
+#include "slipwise/hypotheses/surface_trial.hpp"
 
 namespace slipwise {
 
-/// The averages of one learner, each of which remembers every surface in its own terms; empty where one is not tried.
-inline constexpr std::size_t kAverages = 3;
-inline constexpr std::size_t kJoint = 0, kDirect = 1, kCascaded = 2;  ///< which is whose
 using Averages = std::array<ModelAverage*, kAverages>;
-
-struct Surface {
-  std::string name;
-  double seconds = 0.0;        ///< driven on it
-  std::size_t segments = 0;    ///< learned on it
-  std::size_t visits = 0;      ///< times that the robot came to it
-  std::string last_seen = {};  ///< date, as the drive's start was given it
-  ReferenceSpeeds speeds{};    ///< covered
-  std::size_t used = 0;        ///< drive or change, counted, at which it was taken last
-  std::array<std::optional<SurfaceMemory>, kAverages> memories = {};  ///< per average
-  ClassCounts classes = {};  ///< of terrain that sensors named on it, in visits
-};
 
 /// Facts about a drive's start.
 struct DriveStart {
@@ -55,8 +43,8 @@ struct LabelCounts {
   double right = 0.0;
 };
 
-/// Recalls a surface where it comes back, and opens another where none of those known fits
-/// (derivations/surfaces.md).
+/// Says which surface is driven on, opens another where none of those known fits, and gives the filters those that may
+/// have come back. Who wins a trial gives a name: what predicts follows its branches (derivations/surfaces.md).
 class SurfaceBank {
  public:
   SurfaceBank() = default;
@@ -69,8 +57,8 @@ class SurfaceBank {
   /// A sensor says what the terrain under the robot is. In a trial all that it said counts as one cue, since answers
   /// miss alike; where another surface explains it far better than the present one, a trial begins.
   void hear(const Averages& averages, const DisturbanceModel& law, const TerrainAnswer& answer);
-  /// After each segment that the average `leader` learned: its changes open trials, and its evidence ends them.
-  /// Whether any average goes on from another posterior.
+  /// After each segment: changes that the average `leader` found open trials, and the evidence of its segments ends
+  /// them. Whether a trial ended.
   bool consider(const Averages& averages, std::size_t leader, const DisturbanceModel& law);
   /// Counts a segment that was driven on the present surface.
   void see(const InputHistory& inputs, const Segment& segment);
@@ -80,6 +68,8 @@ class SurfaceBank {
   const std::vector<Surface>& surfaces() const { return surfaces_; }
   /// The one that is driven on; empty if that is open, or it has no entry yet.
   std::optional<std::size_t> present() const { return present_; }
+  /// What competes to be it; empty if that is settled.
+  const std::optional<SurfaceTrial>& trial() const { return trial_; }
   /// What happened since the last call.
   std::vector<SurfaceEvent> take_events();
   /// How often labels are right: the mean of a Beta distribution that began with 9 of 10.
@@ -103,14 +93,12 @@ class SurfaceBank {
     a(self.settings_, self.surfaces_, self.present_, self.seconds_, self.segments_, self.speeds_, self.clock_,
       self.date_);
     a(self.events_, self.label_, self.wanted_, self.labels_, self.named_, self.leader_);
-    a(self.heard_, self.heard_in_trial_, self.heard_factors_, self.doubted_for_);
+    a(self.heard_, self.heard_in_trial_, self.heard_factors_, self.doubted_for_, self.trial_, self.held_);
   }
 
  private:
   void open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
             double since);
-  std::vector<SurfaceCandidate> candidates_of_start() const;
-  std::vector<SurfaceCandidate> candidates_of_change() const;
   Eigen::ArrayXd label_factors(const std::vector<SurfaceCandidate>& candidates) const;
   ClassCounts heard_on_present() const;
   Eigen::ArrayXd class_likelihoods(const std::vector<SurfaceCandidate>& candidates, const ClassCounts& said) const;
@@ -118,7 +106,12 @@ class SurfaceBank {
   void hear_on(SurfaceCandidate::Kind taken);
   void weigh_by_label(std::vector<SurfaceCandidate>& candidates) const;
   std::string judge_label(const SurfaceCandidate& candidate, const std::string& recalled, bool sure);
-  bool settle(const Averages& averages, std::size_t leader, const DisturbanceModel& law, bool at_once);
+  bool settle(const Averages& averages, const DisturbanceModel& law, bool at_once);
+  void suspect(const Averages& averages, const DisturbanceModel& law);
+  bool doubt();
+  void let_go();
+  void weigh_trial(const Averages& averages, const Eigen::VectorXd& log_factors);
+  void recall(const Averages& averages) const;
   void leave_present(const Averages& averages, const DisturbanceModel& law);
   void take(const SurfaceCandidate& candidate, const std::string& recalled, double probability, int segments);
   void enter_new();
@@ -144,11 +137,13 @@ class SurfaceBank {
   std::string wanted_;  ///< name of the surface that has no entry yet
   LabelCounts labels_;
   std::size_t named_ = 0;              ///< surfaces that got a number for a name
-  std::size_t leader_ = 0;             ///< average that decides
+  std::size_t leader_ = 0;             ///< average that decides, in a trial to its end
   ClassCounts heard_;                  ///< said by sensors on the present surface since it was taken
   ClassCounts heard_in_trial_;         ///< since the trial began
   std::vector<double> heard_factors_;  ///< log factors of the candidates that this has been worth so far
   std::string doubted_for_;            ///< class that began the last trial on the present surface
+  std::optional<SurfaceTrial> trial_;
+  bool held_ = false;  ///< the trial is of the surface that was recalled, against one that is like it
 };
 
 }  // namespace slipwise

@@ -18,9 +18,10 @@ namespace slipwise {
 /// The estimate of a surface before the segments that are judged.
 struct SurfacePosterior {
   Estimate estimate;
-  Eigen::VectorXd prior_std;    ///< [parameters]
-  MotionNoise noise;            ///< model of the noise,
-  Eigen::Vector3d noise_scale;  ///< and the learned factor of its variances
+  std::vector<Estimate> jumped = {};  ///< what may be known instead, as likely as each other; empty: it is as it was
+  Eigen::VectorXd prior_std;          ///< [parameters]
+  MotionNoise noise;                  ///< model of the noise,
+  Eigen::Vector3d noise_scale;        ///< and the learned factor of its variances
 };
 
 /// The density of each segment given those before it: Kalman filters over the parameters and the disturbance of slip,

@@ -8,15 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "slipwise/filter/hypothesis_bank.hpp"
 #include "slipwise/filter/surface_slip.hpp"
-#include "slipwise/hypotheses/surface_evidence.hpp"
 
 namespace slipwise {
 
 struct SurfaceSettings {
   bool remember = false;       ///< surfaces are kept, and recalled where they come back
-  double false_alarm = 0.002;  ///< odds at which a surface is taken: how often a wrong one may be [-]
+  double false_alarm = 0.002;  ///< probability that is left to the others where a new surface is taken [-]
+  double doubt = 0.02;         ///< the same, where a known one is taken [-]
   double drift = 0.003;        ///< of a surface since it was left, in prior variances of its slip [-]
   double learning_rate = 1.0;  ///< power of the joint density: below 1, since no model is true [-]
   int soonest = 2;             ///< segments that speak before a surface is taken, at least: one may be an outlier
@@ -36,6 +35,12 @@ struct SurfaceMemory {
   std::size_t observed = 0;        ///< segments weighted by
 };
 
+/// A surface that may be driven on from now on.
+struct RecalledSurface {
+  SurfaceMemory memory;
+  double probability;
+};
+
 /// A memory whose bases are named, as a model file has it.
 struct NamedMemory {
   std::vector<std::string> bases;  ///< one per slip of the memory
@@ -46,29 +51,18 @@ struct NamedMemory {
 struct SurfaceCandidate {
   enum class Kind : std::uint8_t {
     Present,  ///< the one before
-    Changed,  ///< the one before, and some of it forgotten
+    Changed,  ///< the one before, where slip jumped
     Known,    ///< one that is remembered
+    Alike,    ///< like one that is remembered, but slip jumped
     New       ///< one that was never driven
   };
-  friend constexpr std::size_t enumerators(Kind /*type*/) { return 4; }
+  friend constexpr std::size_t enumerators(Kind /*type*/) { return 5; }
   Kind kind;
   std::size_t place = 0;  ///< of the one that is remembered
   double prior = 1.0;     ///< probability, of all candidates
-};
 
-/// What speaks for a candidate.
-struct SurfaceSide {
-  SurfaceEvidence evidence;
-  HypothesisWeights bases;  ///< given this surface
-};
-
-/// Candidates that compete.
-struct SurfaceTrial {
-  std::vector<SurfaceCandidate> candidates;
-  HypothesisBank<SurfaceSide> sides = {};  ///< one of each, by the joint density of all segments so far
-  int segments = 0;                        ///< that the evidence comes from
-
-  const Eigen::VectorXd& probabilities() const { return sides.weights(); }
+  /// Whether it is a surface that was driven before.
+  bool known() const { return kind == Kind::Present || kind == Kind::Known; }
 };
 
 }  // namespace slipwise

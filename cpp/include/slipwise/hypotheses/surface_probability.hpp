@@ -2,7 +2,6 @@
 // How probable each surface is to be the one under the robot.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +14,7 @@ struct SurfaceProbability {
   double probability;
 };
 
-/// Of the candidates of a trial, those without a name together; of the present surface, where there is no trial.
-std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank,
-                                                      const std::optional<SurfaceTrial>& trial);
+/// Of the candidates of its trial, those without a name together; of the present surface, where there is no trial.
+std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank);
 
 }  // namespace slipwise
