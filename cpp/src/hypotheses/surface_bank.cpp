@@ -170,7 +170,8 @@ void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, st
   const ModelAverage& leader = *averages[leader_];
   std::vector<SurfaceMemory> known;
   for (const Surface& surface : surfaces_) {  // an average that began later has not learned the older ones
-    known.push_back(surface.memories[leader_] ? *surface.memories[leader_] : leader.remember());
+    const auto& memory = surface.memories[leader_];
+    known.push_back(memory ? *memory : leader.remember());
   }
   trial_.emplace(std::move(candidates), known, leader, law, since);
 }
@@ -193,8 +194,9 @@ void SurfaceBank::recall(const Averages& averages) const {
 
 /// What is said before any segment speaks counts for predictions too.
 void SurfaceBank::weigh_trial(const Averages& averages, const Eigen::VectorXd& log_factors) {
-  slipwise::present(trial_).weigh(log_factors);
-  if (trial_->segments() == 0) {
+  SurfaceTrial& trial = slipwise::present(trial_);
+  trial.weigh(log_factors);
+  if (trial.segments() == 0) {
     recall(averages);
   }
 }
@@ -281,8 +283,9 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
 
 /// A surface that was recalled turns out to be another, which is like it but for a jump. Whether it did.
 bool SurfaceBank::doubt() {
-  const double another = slipwise::present(trial_).probabilities()[1];
-  const int segments = trial_->segments();
+  const SurfaceTrial& trial = slipwise::present(trial_);
+  const double another = trial.probabilities()[1];
+  const int segments = trial.segments();
   if (another >= 1.0 - settings_.false_alarm) {
     --surfaces_[slipwise::present(present_)].visits;
     let_go();
@@ -325,7 +328,7 @@ void SurfaceBank::drop_least_used(std::size_t most) {
 /// Takes a candidate where it is certain enough, or time is over, or at once. Whether one was taken. A known surface is
 /// doubted until time is over.
 bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, bool at_once) {
-  const SurfaceTrial& trial = slipwise::present(trial_);
+  SurfaceTrial& trial = slipwise::present(trial_);
   const auto& candidates = trial.candidates();
   const bool at_start = candidates.front().kind != Kind::Present;
   const SurfaceDecision decision = trial.decide(label_factors(candidates), settings_);
@@ -335,7 +338,7 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
   const bool another = decision.another > decision.probability;
   SurfaceCandidate taken = candidates[decision.known];
   const bool named = taken.kind == Kind::Known && surfaces_[taken.place].name == label_;
-  if (decision.sure ? another : at_start && !(named && !another)) {  // or kept apart until it is known better
+  if (decision.sure ? another : at_start && (!named || another)) {  // or kept apart until it is known better
     taken = {.kind = Kind::New};
   } else if (!decision.sure && !at_start) {  // a suspicion that was not confirmed
     taken = candidates.front();
@@ -344,7 +347,7 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
   const int segments = trial.segments();
   const std::string recalled = taken.kind == Kind::Known ? surfaces_[taken.place].name : "";
   if (taken.kind == Kind::Known) {
-    trial_->hold(decision.known);
+    trial.hold(decision.known);
     held_ = true;
   } else {
     trial_.reset();
