@@ -225,8 +225,7 @@ void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& 
 
 /// A label says nothing new where it is the one that speaks already, or names the surface that is driven on.
 void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, const std::string& label) {
-  let_go();
-  const bool open_already = trial_.has_value();
+  const bool open_already = trial_.has_value() && !held_;
   const std::string& named = open_already ? label_ : (present_ ? surfaces_[*present_].name : wanted_);
   const bool same = !label.empty() && label == named;
   if (!settings_.remember || same || (open_already && label.empty())) {
@@ -244,6 +243,7 @@ void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, con
 
 /// Something says that the surface may be another from now on.
 void SurfaceBank::suspect(const Averages& averages, const DisturbanceModel& law) {
+  let_go();
   for_each(averages, [](std::size_t /*i*/, ModelAverage& average) { average.expect_change(); });
   if (!surfaces_.empty()) {
     open(averages, law, candidates_of_change(surfaces_.size(), present_, settings_), kNow);
@@ -337,13 +337,15 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
   }
   const bool another = decision.another > decision.probability;
   SurfaceCandidate taken = candidates[decision.known];
+  double probability = decision.probability;
   const bool named = taken.kind == Kind::Known && surfaces_[taken.place].name == label_;
   if (decision.sure ? another : at_start && (!named || another)) {  // or kept apart until it is known better
     taken = {.kind = Kind::New};
+    probability = decision.another;
   } else if (!decision.sure && !at_start) {  // a suspicion that was not confirmed
     taken = candidates.front();
+    probability = trial.probabilities()[0];
   }
-  const double probability = taken.known() ? decision.probability : decision.another;
   const int segments = trial.segments();
   const std::string recalled = taken.kind == Kind::Known ? surfaces_[taken.place].name : "";
   if (taken.kind == Kind::Known) {

@@ -143,8 +143,7 @@ void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, co
   }
   const ClassCounts said = even_odds(answer);
   const auto likeliest = std::ranges::max_element(said, {}, [](const auto& each) { return each.second; });
-  let_go();
-  if (!trial_) {
+  if (!trial_ || held_) {
     const std::vector<SurfaceCandidate> candidates = candidates_of_change(surfaces_.size(), present_, settings_);
     const Eigen::ArrayXd likelihoods = class_likelihoods(candidates, said);
     const bool others = surfaces_.size() > (present_ ? 1 : 0);

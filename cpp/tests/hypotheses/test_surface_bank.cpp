@@ -80,6 +80,9 @@ TEST_CASE("the surface that is driven on is recalled, its visit counted, and a l
   REQUIRE(events.size() == 1);
   CHECK(events.front().kind == SurfaceEvent::Kind::Recalled);
   CHECK(bank.take_events().empty());
+  bank.hear(known.averages(), kWhiteSlip,
+            {.classes = {"sand", "ice"}, .probability = Eigen::Vector2d(0.9, 0.1), .unknown = 0.0});
+  CHECK(bank.trial());  // against what is like it, which an answer that says the same does not end
 }
 
 TEST_CASE(
