@@ -101,8 +101,11 @@ void SurfaceBank::check_loaded(const SurfaceBank& made,
       }
     }
   }
+  require(!held_ || (trial_ && present_), "a surface is doubted that is not driven on");
   if (trial_) {
     trial_->check_loaded(averages[leader_]->model(), surfaces_.size());
+    const std::size_t count = trial_->candidates().size();
+    require(held_ ? count == 2 : count == heard_factors_.size(), "a trial of surfaces has other candidates");
   }
 }
 
