@@ -42,6 +42,7 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
     : model_(std::move(model)),
       settings_(settings),
       state_(model_, settings.noise),
+      noise_before_(settings.noise),
       force_(model_.basis(), settings.force),
       force_at_(std::numeric_limits<double>::infinity()),
       branches_(model_, {.follow = settings.branches.follow && !force_.learned()}) {  // sudden changes count as force
@@ -136,6 +137,8 @@ void CausalFilter::start_from_here() {
 
 void CausalFilter::start_refits(const Estimate& before) {
   before_ = before;
+  noise_before_ = state_.noise_scale;
+  noise_before_.reset_gain();
   refit_.reset();
   kept_.clear();
   next_refit_ = kFirst;
@@ -215,8 +218,9 @@ void CausalFilter::keep(const InputHistory& inputs, const Segment& segment) {
   }
   if (count <= kLast && std::ssize(kept_) == std::lround(next_refit_)) {
     next_refit_ *= kFactor;
-    refit_.emplace(Refit{
-        .work = {model_, before_, state_, settings_, count}, .slip_std = slip_std_, .until = refitted_after(count)});
+    refit_.emplace(Refit{.work = {model_, before_, noise_before_, state_, settings_, count},
+                         .slip_std = slip_std_,
+                         .until = refitted_after(count)});
   }
   if (count >= kLast && !refit_) {
     kept_ = {};

@@ -21,10 +21,11 @@ SLIPWISE_TUNING(kTolerance, 0.03);  // of -2 log posterior: a sixth of a standar
 
 }  // namespace
 
-FilterRefit::FilterRefit(MotionModel model, Estimate before, FilterState now, const CausalFilterSettings& settings,
-                         std::size_t count)
+FilterRefit::FilterRefit(MotionModel model, Estimate before, NoiseScale noise, FilterState now,
+                         const CausalFilterSettings& settings, std::size_t count)
     : model_(std::move(model)),
       before_(std::move(before)),
+      noise_before_(std::move(noise)),
       state_(std::move(now)),
       noise_(settings.noise),
       iekf_(settings.iekf),
@@ -77,7 +78,7 @@ void FilterRefit::end_search() {
     return;
   }
   state_.estimate = std::move(fit.estimate);
-  state_.noise_scale.restart();
+  state_.noise_scale = noise_before_;
   state_.scores.restart();
   at_ = std::move(fit.at);
   phase_ = Phase::Noise;

@@ -103,6 +103,19 @@ TEST_CASE("a first guess of the noise is forgotten once the first segments are l
   }
 }
 
+TEST_CASE("what is fitted again after a change goes on from the noise that was known") {
+  CausalFilter filter = learned_under(30.0, 68);
+  const double known = filter.noise_scale().maxCoeff();
+  CHECK(known < 0.2);
+  filter.forget(0.5);
+  const auto later = tests::simulate_drive(filter.model(), Eigen::Vector2d(-0.05, -0.3),
+                                           {.seed = 83, .windows = 20, .window = 2.0, .noise = kTrueNoise});
+  for (const Segment& segment : later.segments) {
+    filter.learn(later.inputs, segment, kSpeeds);
+    CHECK(filter.noise_scale().maxCoeff() < 1.5 * known);
+  }
+}
+
 TEST_CASE("slices of a refit change nothing but when the work is done") {
   const MotionModel model(named_basis("edd-2"), {});
   const auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.3),

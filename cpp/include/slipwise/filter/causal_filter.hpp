@@ -84,8 +84,8 @@ class CausalFilter {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.settings_, self.speeds_, self.started_, self.state_, self.before_, self.kept_, self.next_refit_,
-      self.full_);
+    a(self.model_, self.settings_, self.speeds_, self.started_, self.state_, self.before_, self.noise_before_,
+      self.kept_, self.next_refit_, self.full_);
     a(self.slip_std_, self.stated_, self.refit_, self.refitted_, self.force_, self.force_at_, self.branches_);
   }
 
@@ -113,7 +113,8 @@ class CausalFilter {
   ReferenceSpeeds speeds_{};
   bool started_ = false;
   FilterState state_;
-  Estimate before_;                  ///< what was known before the segments that are kept
+  Estimate before_;                  ///< what was known before the segments that are kept,
+  NoiseScale noise_before_;          ///< and of the noise
   std::vector<DrivenSegment> kept_;  ///< the first since the start, or since the terrain changed
   double next_refit_;                ///< segments after which a refit begins, rounded
   bool full_ = false;                ///< no more are kept

@@ -22,9 +22,9 @@ namespace slipwise {
 class FilterRefit {
  public:
   FilterRefit() = default;  ///< nothing to do
-  /// `before` was known before the first of the segments; `now` after the last of `count`.
-  FilterRefit(MotionModel model, Estimate before, FilterState now, const CausalFilterSettings& settings,
-              std::size_t count);
+  /// `before` and `noise` were known before the first of the segments; `now` after the last of `count`.
+  FilterRefit(MotionModel model, Estimate before, NoiseScale noise, FilterState now,
+              const CausalFilterSettings& settings, std::size_t count);
 
   /// Does a slice of the work on `segments`: the first that were kept, and those since. Whether there was any.
   bool advance(std::span<const DrivenSegment> segments);
@@ -37,7 +37,8 @@ class FilterRefit {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.before_, self.state_, self.noise_, self.iekf_, self.count_, self.phase_, self.done_);
+    a(self.model_, self.before_, self.noise_before_, self.state_, self.noise_, self.iekf_, self.count_, self.phase_,
+      self.done_);
     a(self.data_, self.at_, self.places_, self.last_, self.search_, self.fitted_);
   }
 
@@ -51,6 +52,7 @@ class FilterRefit {
 
   MotionModel model_;
   Estimate before_;
+  NoiseScale noise_before_;
   FilterState state_;  ///< at first, by which segments are weighted; then the result
   NoiseSettings noise_;
   IekfSettings iekf_;

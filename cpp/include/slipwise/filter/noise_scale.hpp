@@ -47,8 +47,6 @@ class NoiseScale {
              const Rows& expected);
   /// Follows the next residuals as fast as those of the first segments, from the present value.
   void reset_gain() { segments_ = std::min(segments_, settings_.prior_segments); }
-  /// Forgets all residuals.
-  void restart() { *this = NoiseScale(settings_); }
   /// The same as `learn` for a model that never learns the segment, whose rows have these directions.
   void learn_prediction(const Directions& directions, const RowErrors& shown);
 
