@@ -57,22 +57,25 @@ void bind_slip(nb::module_& m) {
       .def(
           "__init__",
           [](MixedAhead* self, const std::vector<double>& edges, const Eigen::MatrixXd& probabilities,
-             const std::vector<Eigen::VectorXd>& slips, const std::vector<Eigen::MatrixXd>& covariances) {
-            if (slips.size() != covariances.size()) {
-              throw std::invalid_argument("each surface ahead needs slip and its covariance");
+             const std::vector<Eigen::VectorXd>& slips, const std::vector<Eigen::MatrixXd>& covariances,
+             const std::vector<Eigen::Vector3d>& noise_scales) {
+            if (slips.size() != covariances.size() || slips.size() != noise_scales.size()) {
+              throw std::invalid_argument("each surface ahead needs slip, its covariance and the scale of its noise");
             }
             std::vector<SurfaceMoments> surfaces;
             for (std::size_t i = 0; i < slips.size(); ++i) {
-              surfaces.push_back({slips[i], covariances[i]});
+              surfaces.push_back({slips[i], covariances[i], noise_scales[i]});
             }
             new (self) MixedAhead(mix_ahead(edges, probabilities, surfaces));
           },
-          "edges"_a, "probabilities"_a, "slips"_a, "covariances"_a,
+          "edges"_a, "probabilities"_a, "slips"_a, "covariances"_a, "noise_scales"_a,
           "Edges [m] between stretches, a row of probabilities for each stretch, and the moments of each surface.")
       .def_ro("slip", &MixedAhead::slip, "Where the path begins, [slip].")
       .def_prop_ro("edges", [](const MixedAhead& mixed) { return mixed.ahead.edges; })
       .def_prop_ro(
           "changes", [](const MixedAhead& mixed) { return mixed.ahead.changes; }, "Of slip at each edge.")
+      .def_ro("noise_scale", &MixedAhead::noise_scale,
+              "Factor of the noise's variances on each stretch, [stretches, 3].")
       .def_ro("directions", &MixedAhead::directions, "Independent errors of all stretches, [slip, stretches] each.");
   nb::enum_<ForceFrame>(m, "ForceFrame").value("Body", ForceFrame::Body).value("World", ForceFrame::World);
   m.def("with_force", &with_force, "basis"_a, "frame"_a, "The basis with the terms of a force.");

@@ -22,7 +22,7 @@ from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.number_text import number_text
 from slipwise.path_figure import path_figure
 from slipwise.student import LEAST_DOF, MOST_DOF
-from slipwise.terrain_ahead import SlipAhead, TerrainAhead, slip_ahead
+from slipwise.terrain_ahead import TerrainAhead, slip_ahead
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -172,7 +172,6 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     disturbance = _core.DisturbanceFilter(model.disturbance)
     now = disturbance.now(model.posterior, history, []) if slip_now is None else slip_now
     slip = slip_ahead(terrain_ahead, model)
-    stretches = None if slip is None else _on_stretches(model, slip)
     under = None if ground is None else ground.under(_finite_pose(at))
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
@@ -185,13 +184,13 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     of_inputs = _of_inputs(model, (inputs, begin, measured), history, segment_over(horizon), begin + ahead)
     for seconds, of_curves in zip(ahead.tolist(), of_inputs, strict=True):
         segment = segment_over(seconds)
-        posterior = stretches or model.posterior_after(force_age + 0.5 * seconds)
         if known is not None:
             segment = segment.with_measured_actuator(*known)
         if slip is None:
+            posterior = model.posterior_after(force_age + 0.5 * seconds)
             expected = disturbance.predict(posterior, history, now, segment)
         else:
-            expected = _core.predict_ahead(disturbance, posterior, history, now, segment, slip.in_core)
+            expected = _core.predict_ahead(disturbance, model.posterior, history, now, segment, slip.in_core)
         poses.append(expected.pose)
         covariance.append(expected.covariance * student_at(model, seconds).inflation + of_curves)
     dof = np.array([student_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
@@ -199,14 +198,6 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         ground.check(_in_frame(np.array(poses), at))
     standing = None if under is None else under.standings(np.array(poses))
     return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance), dof, standing)
-
-
-def _on_stretches(model: Model, slip: SlipAhead) -> _core.MotionPosterior:
-    """Return the robot's state at the start, and how large the noise may be on any stretch ahead."""
-    known = model.posterior
-    return _core.MotionPosterior(
-        known.model, known.estimate, known.prior_std, known.noise, slip.variance_scale
-    )
 
 
 def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) -> _core.SlipNow:

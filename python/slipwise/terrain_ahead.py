@@ -73,8 +73,8 @@ class TerrainAhead:
             )
         odds = _odds(self, surfaces)
         slips, covariances, scales = _moments(model, surfaces)
-        mixed = _core.MixedAhead(np.asarray(self.distance)[1:].tolist(), odds, slips, covariances)
-        return SlipAhead(mixed, (odds @ scales).max(axis=0))
+        edges = np.asarray(self.distance)[1:].tolist()
+        return SlipAhead(_core.MixedAhead(edges, odds, slips, covariances, scales))
 
     def after(self, travelled: float) -> TerrainAhead:
         """Return what is ahead once the robot has moved so far [m] along the path.
@@ -97,7 +97,11 @@ class SlipAhead:
     """The slip of one model along a path, as the core takes it."""
 
     in_core: _core.MixedAhead
-    variance_scale: Floats  # [3] of the noise: the largest of all stretches
+
+    @property
+    def variance_scale(self) -> Floats:
+        """The factors of the noise's variances [3]: the largest of all stretches."""
+        return np.asarray(self.in_core.noise_scale.max(axis=0))
 
     def parameters(self, model: Model) -> Floats:
         """Return the parameters of the model where the path begins."""
@@ -143,7 +147,9 @@ def _odds(ahead: TerrainAhead, surfaces: Sequence[SurfaceSection]) -> Floats:
     return np.asarray(odds / odds.sum(axis=1, keepdims=True))
 
 
-def _moments(model: Model, surfaces: Sequence[SurfaceSection]) -> tuple[list[Floats], list[Floats], Floats]:
+def _moments(
+    model: Model, surfaces: Sequence[SurfaceSection]
+) -> tuple[list[Floats], list[Floats], list[Floats]]:
     """Return slip, covariance and noise scale of each surface, and last of a new one."""
     size = len(surfaces[0].slip)
     slips = [np.array(surface.slip, dtype=np.float64) for surface in surfaces]
@@ -157,7 +163,7 @@ def _moments(model: Model, surfaces: Sequence[SurfaceSection]) -> tuple[list[Flo
     return (
         [*slips, np.array(new.mean)],
         [*covariances, np.array(new.covariance)],
-        np.array([*scales, np.max(scales, axis=0)]),
+        [*scales, np.max(scales, axis=0)],
     )
 
 

@@ -2,6 +2,7 @@
 // Central differences of the integrator along parameters and along what is not known of the slip ahead.
 #include "slipwise/disturbance/ahead_prediction.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -20,6 +21,15 @@ Rows end_along(const MotionModel& model, Eigen::VectorXd parameters, const Drive
                const Eigen::MatrixXd& direction) {
   move_slip(direction, parameters, ahead);
   return end_of(model, parameters, driven, ahead);
+}
+
+/// [m] ahead or back
+double travelled(const SegmentPath& path) {
+  double sum = 0.0;
+  for (const Eigen::Vector3d& tangent : path.tangents) {
+    sum += std::abs(tangent.x());
+  }
+  return sum;
 }
 
 }  // namespace
@@ -53,6 +63,7 @@ ExpectedPose predict_ahead(const DisturbanceFilter& filter, MotionPosterior post
   covariance.topRows(slip).setZero();
   covariance.leftCols(slip).setZero();
   const SegmentLinearization at = linearize_ahead(posterior.model, mean, driven, mixed.ahead);
+  posterior.noise_scale = mixed.noise_scale_until(travelled(at.path));
   ExpectedPose expected = filter.predict_at(posterior, now, at, driven.segment);
   for (const Eigen::MatrixXd& direction : mixed.directions) {
     const Rows by = (end_along(posterior.model, mean, driven, mixed.ahead, kStep * direction) -

@@ -2,6 +2,7 @@
 // Moments of a mixture, stretch by stretch and between stretches.
 #include "slipwise/slip/mixed_ahead.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -56,8 +57,10 @@ MixedAhead mix_ahead(std::vector<double> edges, const Eigen::Ref<const Eigen::Ma
   const Eigen::Index stretches = probabilities.rows();
   Eigen::MatrixXd means = Eigen::MatrixXd::Zero(size, stretches);
   MixedAhead mixed;
+  mixed.noise_scale.setZero(stretches, 3);
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const auto likely = probabilities.col(static_cast<Eigen::Index>(s));
+    mixed.noise_scale += likely * surfaces[s].noise_scale.transpose();
     means += surfaces[s].slip * likely.transpose();
     for (const Eigen::VectorXd& column : columns_of(surfaces[s].covariance)) {
       if (!likely.isZero(0.0)) {
@@ -84,6 +87,11 @@ MixedAhead mix_ahead(std::vector<double> edges, const Eigen::Ref<const Eigen::Ma
   }
   check_ahead(mixed.ahead, size);
   return mixed;
+}
+
+Eigen::Vector3d MixedAhead::noise_scale_until(double travelled) const {
+  const auto reached = std::ranges::lower_bound(ahead.edges, travelled) - ahead.edges.begin();
+  return noise_scale.topRows(1 + reached).colwise().maxCoeff();
 }
 
 }  // namespace slipwise

@@ -62,6 +62,16 @@ TEST_CASE("one surface all along is one error for all stretches") {
   CHECK(mixed.ahead.changes.front().isZero());
 }
 
+TEST_CASE("noise is as large as on the roughest stretch that a path comes to") {
+  std::vector<SurfaceMoments> surfaces = kSurfaces;
+  surfaces[1].noise_scale << 3.0, 2.0, 0.5;
+  const Eigen::MatrixXd odds = (Eigen::MatrixXd(3, 2) << 1.0, 0.0, 0.5, 0.5, 0.0, 1.0).finished();
+  const MixedAhead mixed = mix_ahead({1.0, 3.0}, odds, surfaces);
+  CHECK(mixed.noise_scale_until(0.9) == Eigen::Vector3d::Ones());
+  CHECK(mixed.noise_scale_until(1.1) == Eigen::Vector3d(2.0, 1.5, 1.0));
+  CHECK(mixed.noise_scale_until(5.0) == Eigen::Vector3d(3.0, 2.0, 1.0));
+}
+
 TEST_CASE("what is no distribution over surfaces is refused") {
   CHECK_THROWS_AS(mix_ahead({}, Eigen::RowVector2d(0.5, 0.4), kSurfaces), std::invalid_argument);
   CHECK_THROWS_AS(mix_ahead({}, Eigen::RowVector2d(1.5, -0.5), kSurfaces), std::invalid_argument);

@@ -11,10 +11,11 @@
 
 namespace slipwise {
 
-/// The estimate of one surface's slip.
+/// The estimate of one surface's slip, and the learned factor of the noise's variances there.
 struct SurfaceMoments {
   Eigen::VectorXd slip;        ///< [slip]
   Eigen::MatrixXd covariance;  ///< [slip, slip]
+  Eigen::Vector3d noise_scale = Eigen::Vector3d::Ones();
 };
 
 /// The moments of slip over all stretches of a path.
@@ -24,6 +25,10 @@ struct MixedAhead {
   /// [slip, stretches] each: slip of all stretches moves along one of them as one, and along each by itself with a
   /// standard deviation of one. Their sum of squares is the covariance.
   std::vector<Eigen::MatrixXd> directions;
+  Eigen::MatrixX3d noise_scale;  ///< [stretches, 3] factor of the noise's variances on each
+
+  /// The largest factor of the stretches that a path of this length [m] comes to.
+  Eigen::Vector3d noise_scale_until(double travelled) const;
 };
 
 /// Each stretch, from one edge to the next, has one surface, drawn by its row of `probabilities` [stretches, surfaces],
