@@ -234,7 +234,7 @@ void MotionHypotheses::start_run() {
   if (settings_.average.surfaces.remember) {
     for (ModelAverage* average : averages()) {
       if (average != nullptr) {
-        average->start_run();
+        average->forget_recent();
       }
     }
   }

@@ -223,30 +223,15 @@ void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& 
   }
 }
 
-/// A label says nothing new where it is the one that speaks already, or names the surface that is driven on.
-void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, const std::string& label) {
-  const bool open_already = trial_.has_value() && !held_;
-  const std::string& named = open_already ? label_ : (present_ ? surfaces_[*present_].name : wanted_);
-  const bool same = !label.empty() && label == named;
-  if (!settings_.remember || same || (open_already && label.empty())) {
-    return;
-  }
-  if (open_already) {
-    label_ = label;
-    weigh_trial(averages, label_factors(trial_->candidates()).log());
-    return;
-  }
-  keep_present(averages, law);
-  label_ = label;
-  suspect(averages, law);
-}
-
 /// Something says that the surface may be another from now on.
 void SurfaceBank::suspect(const Averages& averages, const DisturbanceModel& law) {
+  const bool doubted = held_;
   let_go();
+  if (!surfaces_.empty()) {  // what it parts from is what was known before the suspicion
+    open(averages, law, candidates_of_change(surfaces_.size(), present_, doubted, settings_), kNow);
+  }
   for_each(averages, [](std::size_t /*i*/, ModelAverage& average) { average.expect_change(); });
-  if (!surfaces_.empty()) {
-    open(averages, law, candidates_of_change(surfaces_.size(), present_, settings_), kNow);
+  if (trial_) {
     recall(averages);
   }
 }
@@ -264,15 +249,16 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
     if (!changed_since) {
       return doubt();
     }
-    let_go();
   }
+  const bool doubted = held_;
+  let_go();
   leader_ = leader;
   if (!changed_since) {
     return false;
   }
-  if (surfaces_.size() > (present_ ? 1 : 0)) {
+  if (doubted || surfaces_.size() > (present_ ? 1 : 0)) {
     label_.clear();
-    open(averages, law, candidates_of_change(surfaces_.size(), present_, settings_), *changed_since);
+    open(averages, law, candidates_of_change(surfaces_.size(), present_, doubted, settings_), *changed_since);
     return false;
   }
   for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(*changed_since); });
@@ -356,6 +342,9 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
   }
   if (taken.kind != Kind::Present && !at_start) {
     leave_present(averages, law);
+  }
+  if (taken.kind != Kind::Present) {  // what filters find that began before is no change of what is taken
+    for_each(averages, [](std::size_t /*i*/, ModelAverage& average) { average.forget_recent(); });
   }
   hear_on(taken.kind);
   take(taken, judge_label(taken, recalled, decision.sure), probability, segments);

@@ -41,6 +41,24 @@ std::string SurfaceBank::new_name() {
   return name;
 }
 
+/// A label says nothing new where it is the one that speaks already, or names the surface that is driven on.
+void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, const std::string& label) {
+  const bool open_already = trial_.has_value() && !held_;
+  const std::string& named = open_already ? label_ : (present_ ? surfaces_[*present_].name : wanted_);
+  const bool same = !label.empty() && label == named;
+  if (!settings_.remember || same || (open_already && label.empty())) {
+    return;
+  }
+  if (open_already) {
+    label_ = label;
+    weigh_trial(averages, label_factors(trial_->candidates()).log());
+    return;
+  }
+  keep_present(averages, law);
+  label_ = label;
+  suspect(averages, law);
+}
+
 /// How likely the label is on each candidate, by what labels have been worth: it names the surface, or another one. A
 /// label that names no surface speaks for those without a name of their own.
 Eigen::ArrayXd SurfaceBank::label_factors(const std::vector<SurfaceCandidate>& candidates) const {
@@ -144,7 +162,7 @@ void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, co
   const ClassCounts said = even_odds(answer);
   const auto likeliest = std::ranges::max_element(said, {}, [](const auto& each) { return each.second; });
   if (!trial_ || held_) {
-    const std::vector<SurfaceCandidate> candidates = candidates_of_change(surfaces_.size(), present_, settings_);
+    const std::vector<SurfaceCandidate> candidates = candidates_of_change(surfaces_.size(), present_, held_, settings_);
     const Eigen::ArrayXd likelihoods = class_likelihoods(candidates, said);
     const bool others = surfaces_.size() > (present_ ? 1 : 0);
     if (!others || doubted_for_ == likeliest->first || likelihoods.maxCoeff() < kFarBetter * likelihoods[0]) {

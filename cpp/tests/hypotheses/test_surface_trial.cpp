@@ -61,7 +61,7 @@ TEST_CASE("what was known at parting is without the segments on another surface"
   ModelAverage average = remembering_average();
   drive_on_surface(average, -0.1, 73, 20);
   const SurfaceMemory before = average.remember();
-  average.start_run();
+  average.forget_recent();
   average.mark_parting(kNow);
   CHECK(present(average.parting()).slips.back().mean == before.slips.back().mean);
   drive_on_surface(average, -0.5, 74, 3);

@@ -90,8 +90,8 @@ class ModelAverage {
   void mark_parting(double since);
   /// Start of the segments since a change of terrain [s], where one was found since the last call.
   std::optional<double> take_change() { return std::exchange(changed_since_, std::nullopt); }
-  /// Forgets which segments were the last: another run begins.
-  void start_run() { recent_.clear(); }
+  /// Forgets which segments were the last: another run begins, or another surface.
+  void forget_recent() { recent_.clear(); }
   /// Log odds that a trial would give one of two surfaces against the other, were it the one and driven as of late.
   double apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const;
   /// The estimate while a surface is driven on, with so much `drift` since it was left.

@@ -18,9 +18,10 @@ namespace slipwise {
 /// Candidates at the start of a drive, of so many known surfaces. Of those that were never driven, most are like one
 /// that was, but for a jump.
 std::vector<SurfaceCandidate> candidates_of_start(std::size_t surfaces, const SurfaceSettings& settings);
-/// Candidates where something changed; the first is the `present` surface, which need not have an entry yet.
+/// Candidates where something changed; the first is the `present` surface, which need not have an entry yet. Where that
+/// was recalled of late, `doubted`, it may also be as it is remembered.
 std::vector<SurfaceCandidate> candidates_of_change(std::size_t surfaces, std::optional<std::size_t> present,
-                                                   const SurfaceSettings& settings);
+                                                   bool doubted, const SurfaceSettings& settings);
 
 /// What a trial says.
 struct SurfaceDecision {
