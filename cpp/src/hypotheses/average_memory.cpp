@@ -108,19 +108,18 @@ SurfaceMemory ModelAverage::new_surface(std::span<const SurfaceMemory> known, co
   return fresh;
 }
 
-/// Noise is as it was of late whatever the surface: it would tell surfaces apart by when they were driven on.
 SurfacePosterior ModelAverage::posterior_on(const SurfaceCandidate& candidate, std::span<const SurfaceMemory> known,
                                             double since) const {
   using Kind = SurfaceCandidate::Kind;
   const std::size_t first = recent_since(since);
   const bool before = first < recent_.size();
-  const AverageState now = before ? recent_[first].state : state();
-  const bool present = candidate.kind == Kind::Present || candidate.kind == Kind::Changed;
-  SurfacePosterior posterior = posterior_of(
-      present                       ? now
-      : candidate.kind == Kind::New ? state_on(new_surface(known, before ? recent_[first].memory : remember()))
-                                    : state_on(known[candidate.place], settings_.surfaces.drift));
-  posterior.noise_scale = now.noise_scale;
+  if (candidate.kind == Kind::New) {
+    return posterior_of(state_on(new_surface(known, before ? recent_[first].memory : remember())));
+  }
+  SurfacePosterior posterior = posterior_of(candidate.place != SurfaceCandidate::kNone
+                                                ? state_on(known[candidate.place], settings_.surfaces.drift)
+                                            : before ? recent_[first].state
+                                                     : state());
   if (candidate.kind == Kind::Changed || candidate.kind == Kind::Alike) {
     const Eigen::VectorXd unit = slip_prior_std(model_.basis(), speeds_.reference(), 1.0);
     posterior.jumped = BranchBank(model_, {.follow = true}).jumps(posterior.estimate, unit);

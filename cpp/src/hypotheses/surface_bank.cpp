@@ -256,7 +256,7 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
   if (!changed_since) {
     return false;
   }
-  if (doubted || surfaces_.size() > (present_ ? 1 : 0)) {
+  if (surfaces_.size() > (present_ ? 1 : 0)) {
     label_.clear();
     open(averages, law, candidates_of_change(surfaces_.size(), present_, doubted, settings_), *changed_since);
     return false;

@@ -25,11 +25,11 @@ std::vector<SurfaceCandidate> candidates_of_start(std::size_t surfaces, const Su
 
 std::vector<SurfaceCandidate> candidates_of_change(std::size_t surfaces, std::optional<std::size_t> present,
                                                    bool doubted, const SurfaceSettings& settings) {
-  std::vector<SurfaceCandidate> candidates{
-      {.kind = Kind::Present, .place = present.value_or(surfaces), .prior = 1.0 - settings.changed},
-      {.kind = Kind::Changed}};
+  const std::size_t place = doubted && present ? *present : SurfaceCandidate::kNone;
+  std::vector<SurfaceCandidate> candidates{{.kind = Kind::Present, .place = place, .prior = 1.0 - settings.changed},
+                                           {.kind = Kind::Changed, .place = place}};
   for (std::size_t i = 0; i < surfaces; ++i) {
-    if (doubted || present != i) {
+    if (present != i) {
       candidates.push_back({.kind = Kind::Known, .place = i});
       candidates.push_back({.kind = Kind::Alike, .place = i});
     }
@@ -78,16 +78,12 @@ void SurfaceTrial::follow(const ModelAverage& average) {
 SurfaceDecision SurfaceTrial::decide(const Eigen::ArrayXd& by_label, const SurfaceSettings& settings) const {
   SurfaceDecision found;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    double probability = 0.0;
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {  // as it is, or as it is remembered
-      const bool same = k == i || (candidates_[k].known() && candidates_[k].place == candidates_[i].place);
-      probability += same ? probabilities()[static_cast<Eigen::Index>(k)] : 0.0;
-    }
+    const double probability = probabilities()[static_cast<Eigen::Index>(i)];
+    found.another += candidates_[i].known() ? 0.0 : probability;
     if (candidates_[i].known() && probability > found.probability) {
       found.known = i;
       found.probability = probability;
     }
-    found.another += candidates_[i].known() ? 0.0 : probabilities()[static_cast<Eigen::Index>(i)];
   }
   const bool another = found.another >= 1.0 - settings.false_alarm;
   const std::size_t likeliest = another ? candidates_.size() - 1 : found.known;  // the last is a new one

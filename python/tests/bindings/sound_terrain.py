@@ -39,7 +39,11 @@ def _answer() -> _core.TerrainAnswer:
 
 def _mixed() -> _core.MixedAhead:
     return _core.MixedAhead(
-        [1.0], np.array([[1.0, 0.0], [0.3, 0.7]]), [np.zeros(2), np.ones(2)], [np.eye(2)] * 2
+        [1.0],
+        np.array([[1.0, 0.0], [0.3, 0.7]]),
+        [np.zeros(2), np.ones(2)],
+        [np.eye(2)] * 2,
+        [np.ones(3)] * 2,
     )
 
 
@@ -101,6 +105,7 @@ TERRAIN_ARGUMENTS: dict[str, Callable[[], Any]] = {
     "MixedAhead.__init__ probabilities": lambda: np.array([[1.0, 0.0], [0.3, 0.7]]),
     "MixedAhead.__init__ slips": lambda: [np.zeros(2), np.ones(2)],
     "MixedAhead.__init__ covariances": lambda: [np.eye(2), np.eye(2)],
+    "MixedAhead.__init__ noise_scales": lambda: [np.ones(3), np.ones(3)],
     "shrunk_prior known": lambda: [_slip(0.1), _slip(0.2)],
     "shrunk_prior first_std": lambda: np.full(2, 0.3),
     "shrunk_prior speeds": lambda: (1.0, 0.5),

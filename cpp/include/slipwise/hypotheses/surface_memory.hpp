@@ -57,9 +57,10 @@ struct SurfaceCandidate {
     New       ///< one that was never driven
   };
   friend constexpr std::size_t enumerators(Kind /*type*/) { return 5; }
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   Kind kind;
-  std::size_t place = 0;  ///< of the one that is remembered
-  double prior = 1.0;     ///< probability, of all candidates
+  std::size_t place = kNone;  ///< of the one that is remembered; the present one is else as it is known now
+  double prior = 1.0;         ///< probability, of all candidates
 
   /// Whether it is a surface that was driven before.
   bool known() const { return kind == Kind::Present || kind == Kind::Known; }

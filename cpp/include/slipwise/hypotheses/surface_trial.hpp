@@ -19,7 +19,7 @@ namespace slipwise {
 /// that was, but for a jump.
 std::vector<SurfaceCandidate> candidates_of_start(std::size_t surfaces, const SurfaceSettings& settings);
 /// Candidates where something changed; the first is the `present` surface, which need not have an entry yet. Where that
-/// was recalled of late, `doubted`, it may also be as it is remembered.
+/// was recalled of late, `doubted`, it is as it is remembered: what was learned since may be wrong.
 std::vector<SurfaceCandidate> candidates_of_change(std::size_t surfaces, std::optional<std::size_t> present,
                                                    bool doubted, const SurfaceSettings& settings);
 
