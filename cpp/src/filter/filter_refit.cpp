@@ -21,6 +21,7 @@ SLIPWISE_TUNING(kTolerance, 0.03);  // of -2 log posterior: a sixth of a standar
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-size): a model, what was known before and is now, and how it is learned.
 FilterRefit::FilterRefit(MotionModel model, Estimate before, NoiseScale noise, FilterState now,
                          const CausalFilterSettings& settings, std::size_t count)
     : model_(std::move(model)),
