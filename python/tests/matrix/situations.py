@@ -332,7 +332,7 @@ SITUATIONS: tuple[Situation, ...] = (
         "wheel",
         truth=SLIP,
         fleet=True,
-        without=UNCHANGED,
+        without=(*UNCHANGED, "replay"),  # `live` begins with no fleet
         slow=True,
         changed=TIGHTER,
         seconds=40.0,

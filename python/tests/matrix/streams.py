@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import fields
 from functools import cache
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -19,7 +20,8 @@ from matrix.simulator import Floats, Robot, held_commands, in_space, seen_from_s
 
 import slipwise as sw
 from slipwise.calibration.coming import coming_of
-from slipwise.calibration.prepared_run import prepare_run
+from slipwise.calibration.from_prior import KnownFleet, begin_from, start_of
+from slipwise.calibration.prepared_run import has_wheels, prepare_run
 from slipwise.live.replay import samples_of
 from slipwise.live.samples import Command, KnownForce, Pose, Reading, Sample, Wheels
 from slipwise.logs import Log
@@ -91,6 +93,9 @@ def learner_of(learned: Learned) -> sw.MotionLearner:
             run.run.name, label=str(run.run.extra["terrain"][0]) if "terrain" in run.run.extra else ""
         )
     else:
+        if learned.situation.fleet:
+            start = start_of(KnownFleet.load(Path(learned.begins[1])))
+            begin_from(learner._core, start, learned.situation.learns, wheels=has_wheels((run,)))
         learner.start_run(run.run.name)
     for k, sample in enumerate(samples):
         push(learner, sample)
