@@ -170,7 +170,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     known = None if model.car is not None else _measured_actuator(begin, measured)
     history = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
     disturbance = _core.DisturbanceFilter(model.disturbance)
-    now = disturbance.now(model.posterior, history, []) if slip_now is None else slip_now
+    known_now = model.posterior
+    now = disturbance.now(known_now, history, []) if slip_now is None else slip_now
     slip = slip_ahead(terrain_ahead, model)
     under = None if ground is None else ground.under(_finite_pose(at))
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
@@ -190,7 +191,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             posterior = model.posterior_after(force_age + 0.5 * seconds)
             expected = disturbance.predict(posterior, history, now, segment)
         else:
-            expected = _core.predict_ahead(disturbance, model.posterior, history, now, segment, slip.in_core)
+            expected = _core.predict_ahead(disturbance, known_now, history, now, segment, slip.in_core)
         poses.append(expected.pose)
         covariance.append(expected.covariance * student_at(model, seconds).inflation + of_curves)
     dof = np.array([student_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
