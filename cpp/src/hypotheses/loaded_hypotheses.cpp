@@ -76,8 +76,13 @@ void ModelAverage::check_loaded(const ModelAverage& made) const {
 }
 
 void SurfaceTrial::check_loaded(const MotionModel& model, std::size_t surfaces) const {
+  using Kind = SurfaceCandidate::Kind;
   const auto there = [&](const SurfaceCandidate& candidate) {
-    return candidate.kind != SurfaceCandidate::Kind::Known || candidate.place < surfaces;
+    const auto alike = [&](const SurfaceCandidate& each) {
+      return each.kind == Kind::Alike && each.place == candidate.place;
+    };
+    return candidate.kind != Kind::Known ||
+           (candidate.place < surfaces && std::ranges::any_of(candidates_, alike));  // it goes on against that
   };
   require(!candidates_.empty() && evidence_.size() == candidates_.size() && are_weights(evidence_.weights()),
           "a trial of surfaces does not fit together");
