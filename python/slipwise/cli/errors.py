@@ -5,15 +5,14 @@ from __future__ import annotations
 
 import io
 import os
-import signal
 import sys
 import traceback
 from collections.abc import Callable
-from types import FrameType
 
 import typer
 
 from slipwise.addresses import masked
+from slipwise.cli.stop_signals import Interrupt
 from slipwise.errors import SlipwiseError
 
 BAD_USE = 2
@@ -23,24 +22,22 @@ _UsageError = typer.BadParameter.__mro__[1]  # typer's own copy of click, or cli
 def exit_code_of(command: Callable[[], int], *, debug: bool) -> int:
     """Run a command; return its exit code, or 2 after one line that says what went wrong."""
     _make_streams_safe()
-    stop = _StopOnSignal()
-    try:
-        code = command()
-        sys.stdout.flush()
-        return code
-    except typer.Exit as exit_request:
-        return int(exit_request.exit_code)
-    except BrokenPipeError:
-        silence_stdout()
-        return 0
-    except OSError as error:
-        silence_stdout()
-        return _report(error, debug=debug)
-    except (Exception, KeyboardInterrupt) as error:
-        # a library may turn the interrupt into an error of its own
-        return _report(KeyboardInterrupt() if stop.asked else error, debug=debug)
-    finally:
-        stop.restore()
+    with Interrupt() as interrupt:
+        try:
+            code = command()
+            sys.stdout.flush()
+            return code
+        except typer.Exit as exit_request:
+            return int(exit_request.exit_code)
+        except BrokenPipeError:
+            silence_stdout()
+            return 0
+        except OSError as error:
+            silence_stdout()
+            return _report(error, debug=debug)
+        except (Exception, KeyboardInterrupt) as error:
+            # a library may turn the interrupt into an error of its own
+            return _report(KeyboardInterrupt() if interrupt.asked else error, debug=debug)
 
 
 def _report(error: BaseException, *, debug: bool) -> int:
@@ -102,29 +99,3 @@ def _make_streams_safe() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
-
-
-class _Stopped(KeyboardInterrupt):
-    """A KeyboardInterrupt of its own class.
-
-    `python -m` ends by SIGINT, with another exit code than ours, once a plain KeyboardInterrupt has left code
-    that was compiled from a text, as dataclasses and named tuples are; even where it was caught above.
-    """
-
-
-class _StopOnSignal:
-    """Raises KeyboardInterrupt on Ctrl-C and on SIGTERM, and remembers it."""
-
-    def __init__(self) -> None:
-        self.asked = False
-        self._before = {
-            number: signal.signal(number, self._stop) for number in (signal.SIGINT, signal.SIGTERM)
-        }
-
-    def restore(self) -> None:
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
-
-    def _stop(self, _signal: int, _frame: FrameType | None) -> None:
-        self.asked = True
-        raise _Stopped

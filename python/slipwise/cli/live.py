@@ -3,10 +3,7 @@
 
 from __future__ import annotations
 
-import contextlib
-import signal
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Protocol
 
@@ -20,6 +17,7 @@ from slipwise.cli.options import (
     optional,
     takes_log_options,
 )
+from slipwise.cli.stop_signals import Stopped, taken_by
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -117,7 +115,8 @@ def live(
         inputs=(replay, settings, start, *log_options.files),
     )
     shown = Shown(quiet or (results is not None and str(results) == "-"), web)
-    with stopped_by_signals() as stopping:
+    stopping = Stopping()
+    with taken_by(stopping):
         source = Source(replay, demo, rate, results)
         robot = open_robot(chosen, log_options, source, say=shown.say)
         chosen = settled(chosen, log_options, robot.coming)
@@ -174,17 +173,5 @@ class Stopping:
     def __call__(self, _signal: int, _frame: FrameType | None) -> None:
         """Take a signal."""
         if self.node is None:
-            raise KeyboardInterrupt
+            raise Stopped
         self.node.stop()
-
-
-@contextlib.contextmanager
-def stopped_by_signals() -> Iterator[Stopping]:
-    """Let SIGINT and SIGTERM end the node in order."""
-    stopping = Stopping()
-    before = {number: signal.signal(number, stopping) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield stopping
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -7,12 +7,12 @@ import contextlib
 import json
 import os
 import shutil
-import signal
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from slipwise.cli.stop_signals import held
 from slipwise.files import output_errors, write_text_whole
 from slipwise.part_folder import is_locked, locked
 
@@ -34,7 +34,7 @@ def run_folder(runs: Path, command: str) -> Iterator[Path]:
     """
     folder: Path | None = None
     try:
-        with _signals_held():
+        with held():  # else a folder may be created and then forgotten
             folder = _create(runs, command)
         with contextlib.ExitStack() as marked:
             mark = folder / INCOMPLETE
@@ -45,7 +45,7 @@ def run_folder(runs: Path, command: str) -> Iterator[Path]:
                 mark.unlink()
                 _link(runs / LATEST, folder)
     except BaseException:
-        with _signals_held():
+        with held():
             if folder is not None:
                 shutil.rmtree(folder, ignore_errors=True)
             with contextlib.suppress(OSError):
@@ -84,27 +84,6 @@ def _toml(value: Any) -> str:
     if isinstance(value, dict):
         return "{" + ", ".join(f"{json.dumps(key)} = {_toml(item)}" for key, item in value.items()) + "}"
     return json.dumps(value)
-
-
-@contextlib.contextmanager
-def _signals_held() -> Iterator[None]:
-    """Let Ctrl-C and SIGTERM wait, so that a folder is never created and then forgotten.
-
-    Their handlers wait, not the signals: a signal that this thread blocks goes to another thread of a
-    library, and Python then calls the handler in this one.
-    """
-    came: list[int] = []
-    before = {
-        number: signal.signal(number, lambda sent, _: came.append(sent))
-        for number in (signal.SIGINT, signal.SIGTERM)
-    }
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        for sent in came[:1]:
-            signal.raise_signal(sent)
 
 
 def _create(runs: Path, command: str) -> Path:

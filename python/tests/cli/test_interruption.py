@@ -94,6 +94,35 @@ sys.exit(exit_code_of(lambda: exec({stop!r}), debug=False))
     assert (done.returncode, done.stderr) == (2, f"slipwise: {STOPPED}\n")
 
 
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_that_comes_where_python_ignores_what_is_raised_ends_the_command_too(
+    folder: Path, sent: signal.Signals
+) -> None:
+    program = f"""
+import os, sys, time, weakref
+from slipwise.cli.errors import exit_code_of
+
+def gone(_):
+    os.kill(os.getpid(), {int(sent)})
+    [None for _ in range(1000)]
+
+class Held:
+    pass
+
+def command():
+    held = Held()
+    kept = weakref.ref(held, gone)
+    del held
+    time.sleep(1e6)
+    return 0
+
+sys.exit(exit_code_of(command, debug=False))
+"""
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+    assert (done.returncode, done.stderr) == (2, f"slipwise: {STOPPED}\n")
+
+
 def has_begun(pid: int) -> bool:
     """Whether a process simulates; one that has ended meanwhile does not."""
     try:
