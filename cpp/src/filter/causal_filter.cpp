@@ -271,7 +271,7 @@ IekfUpdate CausalFilter::learn(const InputHistory& inputs, const Segment& segmen
   }
   if (settings_.noise.adapt) {
     const Estimate& first = branches_.follow() ? prior(speeds_) : before_;
-    stated_ = state_.scores.std_factors(first.covariance, state_.estimate.covariance);
+    stated_ = state_.scores.std_factors(first.covariance, state_.estimate.covariance, lasting_);
     // Scores are summed as of what is constant: of a force, which changes, they may tell of more spread, not of less.
     for (const Eigen::Index place : force_.places()) {
       stated_[place] = std::max(stated_[place], 1.0);

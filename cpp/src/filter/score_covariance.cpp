@@ -18,7 +18,6 @@ namespace {
 /// if they knew more than they do.
 SLIPWISE_TUNING(kModelSegments, 20.0);
 SLIPWISE_TUNING(kKernelTime, 16.0);      // [s] scores so far apart count for 1/e in the sum of their correlations
-SLIPWISE_TUNING(kCorrelationTime, 5.0);  // [s] of slip disturbances, for which the kernel's loss is made good
 SLIPWISE_TUNING(kMostTaken, 0.6);        // largest fraction of a correlation that the fitted mean is taken to remove
 SLIPWISE_TUNING(kFewCorrelations, 2.0);  // covariance inflation per unit of kernel time over learned time
 SLIPWISE_TUNING(kLeast, 0.4);            // factor of the variances by correlations, where these are negative
@@ -101,7 +100,8 @@ void ScoreCovariance::add_score(const Jacobian& jacobian, const Residual& residu
 }
 
 /// Of the variances of one group, as far as they come from the segments.
-double ScoreCovariance::factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& covariance) const {
+double ScoreCovariance::factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& covariance,
+                               double correlation_time) const {
   const double information = block_trace(covariance, information_, group);
   const double scatter = block_trace(covariance, scatter_, group);
   if (!(scatter > 0.0)) {
@@ -111,18 +111,19 @@ double ScoreCovariance::factor(const std::vector<Eigen::Index>& group, const Eig
   const double taken = std::min(2.0 * pairs_ / (segments_ * segments_), kMostTaken);
   const double lagged = 2.0 * block_trace(covariance, lagged_, group) / scatter;
   const double correlation = (lagged + taken) / (1.0 - taken);
-  const double gain = (1.0 + kCorrelationTime / kKernelTime) * (1.0 + kFewCorrelations * taken);
+  const double gain = (1.0 + correlation_time / kKernelTime) * (1.0 + kFewCorrelations * taken);
   return expected / information * std::max(1.0 + gain * correlation, kLeast);
 }
 
-Eigen::VectorXd ScoreCovariance::std_factors(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& covariance) const {
+Eigen::VectorXd ScoreCovariance::std_factors(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& covariance,
+                                             double correlation_time) const {
   if (groups_.empty()) {
     return {};
   }
   const Eigen::MatrixXd by_prior = Cholesky(prior).solve(covariance);
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(covariance.rows());
   for (const auto& group : groups_) {
-    const double of_segments = factor(group, covariance);
+    const double of_segments = factor(group, covariance, correlation_time);
     for (const Eigen::Index i : group) {
       const double of_prior = std::clamp(covariance.col(i).dot(by_prior.col(i)) / covariance(i, i), 0.0, 1.0);
       factors[i] = std::sqrt(of_prior + (1.0 - of_prior) * of_segments);

@@ -180,6 +180,10 @@ void ModelAverage::forget(double fraction) {
   }
 }
 
+void ModelAverage::expect_lasting(double seconds) {
+  std::ranges::for_each(filters_.keys(), [&](CausalFilter& filter) { filter.expect_lasting(seconds); });
+}
+
 void ModelAverage::expect_change() { std::ranges::for_each(filters_.keys(), &CausalFilter::expect_change); }
 
 std::vector<std::size_t> ModelAverage::side_places(std::size_t side) const {

@@ -151,6 +151,15 @@ void MotionHypotheses::forget(double fraction) {
   }
 }
 
+void MotionHypotheses::expect_lasting(const DisturbanceModel& law) {
+  const double seconds = correlation_time(law, kUsualCorrelationTime);
+  for (ModelAverage* average : averages_of(*this)) {
+    if (average != nullptr) {
+      average->expect_lasting(seconds);
+    }
+  }
+}
+
 void MotionHypotheses::expect_change() {
   for (ModelAverage* average : averages_of(*this)) {
     if (average != nullptr) {

@@ -47,6 +47,16 @@ DisturbedTerms disturbed_terms(const MotionModel& model, const Eigen::Ref<const 
   return terms;
 }
 
+double correlation_time(const DisturbanceModel& law, double usual) {
+  double mean = law.candidates.empty() ? usual : 0.0;
+  for (std::size_t i = 0; i < law.candidates.size(); ++i) {
+    const SlipDisturbance& candidate = law.candidates[i];
+    const bool differs = candidate.linear > 0.0 || candidate.angular > 0.0;
+    mean += law.weights[static_cast<Eigen::Index>(i)] * (differs ? candidate.time_constant : usual);
+  }
+  return mean;
+}
+
 double kept_over(double spans) { return spans > 0.0 ? -std::expm1(-spans) / spans : 1.0; }
 
 double variance_over(double spans) {

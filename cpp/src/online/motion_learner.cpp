@@ -246,12 +246,14 @@ void MotionLearner::work_through() {
   }
 }
 
-/// How slip differs now is learned about what was known before the segment.
+/// How slip differs now is learned about what was known before the segment, from the segments before it: how late they
+/// came says nothing of slip.
 void MotionLearner::learn_disturbance(const DrivenSegment& segment) {
   if (settings_.learn_disturbance) {
     const auto& before = known_.newest().slip;
-    const SlipNow& slip = known_.slip_after(disturbance_, before, known_.segments_before(segment.segment.start));
+    const SlipNow& slip = known_.slip_after(disturbance_, before, known_.segments_until(segment.segment.start));
     disturbance_.learn(*before, slip, segment);
+    hypotheses_.expect_lasting(disturbance_.law());
   }
 }
 

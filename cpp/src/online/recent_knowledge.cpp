@@ -49,12 +49,18 @@ const Knowledge& RecentKnowledge::at(double t) const {
 }
 
 SegmentList RecentKnowledge::segments_before(double t) const {
+  SegmentList found = segments_until(t);
+  std::erase_if(found, [&](const DrivenSegment* segment) { return later(segment->known_at, t); });
+  return found;
+}
+
+SegmentList RecentKnowledge::segments_until(double t) const {
   SegmentList found;
   if (!disturbed_) {
     return found;
   }
   for (const DrivenSegment& segment : segments_) {
-    if (!later(segment.known_at, t) && later(segment.segment.start, t - recent_)) {
+    if (!later(segment.segment.end, t) && later(segment.segment.start, t - recent_)) {
       found.push_back(&segment);
     }
   }

@@ -17,10 +17,13 @@ constexpr int kRuns = 300;
 constexpr int kSegments = 300;
 constexpr double kStd = 0.1;  // of the noise model, in every component
 
-/// Errors of one unit of variance: `slow` of it with a correlation time of 5 s, the rest white.
+/// Errors of one unit of variance: `slow` of it with a correlation time of `seconds`, the rest white. As long they are
+/// `said` to be alike.
 struct ErrorModel {
   double std = kStd;
   double slow = 0.0;
+  double seconds = 5.0;
+  double said = 5.0;
 };
 
 struct Scatter {
@@ -33,7 +36,7 @@ Scatter scatter(const ErrorModel& errors) {
   const std::vector<std::string> yaw_rate{"w"};
   const MotionModel model(Basis("one", {}, {}, yaw_rate), {});
   const Eigen::Matrix3d noise = kStd * kStd * Eigen::Matrix3d::Identity();
-  const double keep = std::exp(-1.0 / 5.0);
+  const double keep = std::exp(-1.0 / errors.seconds);
   std::mt19937_64 random(18);
   std::normal_distribution<double> normal;
   Scatter sum;
@@ -55,7 +58,7 @@ Scatter scatter(const ErrorModel& errors) {
           .start = double(i), .end = i + 1.0, .measured = measured_pose({0.0, 0.0, error[i] - error.mean()})};
       scores.add(at, covariance, segment, noise);
     }
-    const double factor = scores.std_factors(Eigen::MatrixXd::Constant(1, 1, 1e4), covariance)[0];
+    const double factor = scores.std_factors(Eigen::MatrixXd::Constant(1, 1, 1e4), covariance, errors.said)[0];
     sum.true_variance += error.mean() * error.mean() / kRuns;
     sum.reported_variance += factor * factor * covariance(0, 0) / kRuns;
   }
@@ -79,6 +82,13 @@ TEST_CASE("errors that are correlated in time teach less, and the covariance say
     CHECK(found.true_variance > 3.0 * kStd * kStd / kSegments);
     CHECK(found.reported_variance / found.true_variance == doctest::Approx(1.1).epsilon(0.25));
   }
+}
+
+TEST_CASE("errors that last longer than usual are made good for as long as is said") {
+  const Scatter usual = scatter({.slow = 0.5, .seconds = 20.0});
+  const Scatter told = scatter({.slow = 0.5, .seconds = 20.0, .said = 20.0});
+  CHECK(usual.reported_variance / usual.true_variance < 0.75);
+  CHECK(told.reported_variance / told.true_variance == doctest::Approx(1.0).epsilon(0.15));
 }
 
 SegmentLinearization yaw_segment(double jacobian) {

@@ -55,6 +55,12 @@ TEST_CASE("the mean of a process over some time has the variance of simulated on
   CHECK(variance_over(0.999e-3) == doctest::Approx(variance_over(1.001e-3)).epsilon(1e-6));
 }
 
+TEST_CASE("slip differs for as long as likely candidates say, and for as long as usual where none is likely") {
+  const DisturbanceModel law{{{0.0, 0.0, 1.0}, {0.1, 0.0, 5.0}, {0.0, 0.2, 20.0}}, Eigen::Vector3d(0.5, 0.2, 0.3)};
+  CHECK(correlation_time(law, 8.0) == doctest::Approx(0.5 * 8.0 + 0.2 * 5.0 + 0.3 * 20.0));
+  CHECK(correlation_time({}, 8.0) == 8.0);
+}
+
 TEST_CASE("the slip disturbance widens the parameters' covariance less over a longer time, and not without a law") {
   const MotionModel model(named_basis("edd-2"), {});
   const Eigen::VectorXd prior_std = Eigen::Vector2d(0.3, 0.4);

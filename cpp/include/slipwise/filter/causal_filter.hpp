@@ -51,6 +51,8 @@ class CausalFilter {
   /// Something says that the terrain may have changed just now: slip may have jumped, and where none may jump it is
   /// less sure.
   void expect_change();
+  /// Slip differs from what is learned for about so long [s]; covariances are stated accordingly.
+  void expect_lasting(double seconds) { lasting_ = seconds; }
 
   /// The estimate of the surface that is driven on, apart from the robot.
   SurfaceSlip surface() const;
@@ -86,7 +88,8 @@ class CausalFilter {
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.settings_, self.speeds_, self.started_, self.state_, self.before_, self.noise_before_,
       self.kept_, self.next_refit_, self.full_);
-    a(self.slip_std_, self.stated_, self.refit_, self.refitted_, self.force_, self.force_at_, self.branches_);
+    a(self.slip_std_, self.stated_, self.refit_, self.refitted_, self.force_, self.force_at_, self.branches_,
+      self.lasting_);
   }
 
  private:
@@ -125,6 +128,7 @@ class CausalFilter {
   BodyForce force_;
   double force_at_;  ///< [s] middle of the segment that spoke of it last
   BranchBank branches_;
+  double lasting_ = kUsualCorrelationTime;  ///< [s]
 };
 
 /// Covariance of what is predicted: parameters, slip noise and, where `with_pose_noise`, the two measured poses.

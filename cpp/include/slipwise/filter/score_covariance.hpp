@@ -20,6 +20,9 @@ struct MeasurementScore {
   double t;                    ///< [s] of its middle
 };
 
+/// [s] for which slip differs from what is learned, where nothing is known of it.
+inline constexpr double kUsualCorrelationTime = 5.0;
+
 /// Running sums of the scores J^T R^-1 r of segments: their covariance, and that with the scores before them. Compared
 /// with the information J^T R^-1 J, they give factors for the variances of an estimate
 /// (derivations/uncertainty.md).
@@ -41,8 +44,10 @@ class ScoreCovariance {
 
   /// Factors of the standard deviations of an estimate of this covariance, learned from the segments added and, before
   /// them, from a prior of this covariance. What comes from segments has one factor per channel of slip, and one for
-  /// all other parameters; what comes from the prior stays.
-  Eigen::VectorXd std_factors(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& covariance) const;
+  /// all other parameters; what comes from the prior stays. The kernel's loss is made good for scores that are alike
+  /// for `correlation_time` [s].
+  Eigen::VectorXd std_factors(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& covariance,
+                              double correlation_time = kUsualCorrelationTime) const;
 
   /// \throws std::invalid_argument where a loaded one does not fit so many parameters.
   void check_loaded(Eigen::Index size) const;
@@ -58,7 +63,8 @@ class ScoreCovariance {
   template <class Jacobian, class Residual, class Noise>
   void add_score(const Jacobian& jacobian, const Residual& residual, const Eigen::MatrixXd& covariance,
                  const Noise& noise, double middle);
-  double factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& covariance) const;
+  double factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& covariance,
+                double correlation_time) const;
 
   std::vector<std::vector<Eigen::Index>> groups_;  ///< parameters whose factor is one
   Eigen::MatrixXd information_;                    ///< sum of J^T R^-1 J

@@ -53,7 +53,6 @@ class CascadedModel {
   bool refitted() const { return refitted_; }
   /// Gives the slip parameters `fraction` of their prior variance back.
   void forget(double fraction) { slip_.forget(fraction); }
-  void expect_change() { slip_.expect_change(); }
   /// What learns the slip.
   ModelAverage& slip() { return slip_; }
   const ModelAverage& slip() const { return slip_; }

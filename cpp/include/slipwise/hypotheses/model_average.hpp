@@ -79,6 +79,8 @@ class ModelAverage {
   void forget(double fraction);
   /// Something says that the terrain may have changed just now.
   void expect_change();
+  /// Slip differs from what is learned for about so long [s].
+  void expect_lasting(double seconds);
 
   /// The estimate of the surface that is driven on, or of the likeliest.
   SurfaceMemory remember() const;

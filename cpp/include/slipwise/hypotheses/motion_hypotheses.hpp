@@ -94,6 +94,8 @@ class MotionHypotheses {
   void forget(double fraction);
   /// Something says that the terrain may have changed just now.
   void expect_change();
+  /// Slip differs from what is learned as the slip disturbance says.
+  void expect_lasting(const DisturbanceModel& law);
   /// Another drive begins: on a surface that is remembered, or a new one. `law` is the slip disturbance as it is known.
   void start_drive(const DisturbanceModel& law, const DriveStart& start);
   /// The surface changes now by a label, to the one of this name if any.

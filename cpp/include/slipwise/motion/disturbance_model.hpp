@@ -41,6 +41,10 @@ inline constexpr Eigen::Index kMostDisturbed = 4;
 /// \throws std::invalid_argument when there is not one prior standard deviation per parameter.
 DisturbedTerms disturbed_terms(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& prior_std);
 
+/// For how long slip differs from what was learned, on average over the candidates [s]; one that says that it does not
+/// counts as `usual`.
+double correlation_time(const DisturbanceModel& law, double usual);
+
 /// Mean, over a time of `spans` time constants, of what such a process keeps of its value at the start.
 double kept_over(double spans);
 /// Variance of the mean, over a time of `spans` time constants, of such a process of variance 1.

@@ -33,6 +33,8 @@ class RecentKnowledge {
   const Knowledge& at(double t) const;
   /// The last segments that were complete at `t` [s].
   SegmentList segments_before(double t) const;
+  /// The last segments that had ended at `t` [s], however late they were known.
+  SegmentList segments_until(double t) const;
   /// Where slip was after these of them: good until the next call.
   const SlipNow& slip_after(const DisturbanceFilter& disturbance, const std::shared_ptr<const MotionPosterior>& motion,
                             const SegmentList& segments) {
