@@ -27,7 +27,7 @@ _log = logging.getLogger(__name__)
 _DEPTH = 1000  # messages kept for who is busy, on either side: 10 s at 100 Hz
 _WAIT = 200_000_000  # ns
 _PAUSE = 0.005  # s after messages were taken: a wake-up for each would cost more than to read it
-_LOOK = 0.25  # s between looks for silent topics
+_LOOK = 0.25  # s between looks for who publishes, and for silent topics
 
 
 @dataclass
@@ -210,10 +210,10 @@ class CycloneWire:
             with self._lock:
                 if self._closed.is_set():
                     return
-                if self._discovery.refresh():
-                    self._adapt()
-                if time.monotonic() >= look:
+                if time.monotonic() >= look:  # to look costs as much as fifty messages
                     look = time.monotonic() + _LOOK
+                    if self._discovery.refresh():
+                        self._adapt()
                     self._look_for_silence()
 
     def _deliver(self, subscription: _Subscription) -> None:
