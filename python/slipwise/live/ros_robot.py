@@ -66,7 +66,8 @@ def find_robot(  # noqa: PLR0913 (where it is, and what is known of it)
             say("satellite fixes without an IMU: positions only, headings are the direction of the path")
         seen = first_poses(first, roles, say)
         positions = only_positions(roles) or table.positions or seen.positions
-        seen = FirstPoses(positions, seen.attitude or table.attitude)
+        tilts = seen.tilts or (table.attitude and roles.imu is None)
+        seen = FirstPoses(positions, seen.attitude or table.attitude, tilts)
         cues = CueTopics(table.override_topic, table.surface_topic)
         transport = RosTransport(
             wire,

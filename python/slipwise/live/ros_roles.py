@@ -81,7 +81,7 @@ def uses_of(roles: Roles) -> list[tuple[Use, Topic]]:
     found: tuple[tuple[Use, Topic | None], ...] = (
         ("command", roles.command),
         ("wheel", roles.wheel),
-        ("orientation", roles.imu if fixes else None),
+        ("orientation", roles.imu if roles.pose is not None else None),
         ("gyro", roles.gyro if turns else None),
         ("pose", roles.pose),
         *(("other", topic) for topic in roles.others),
@@ -90,26 +90,28 @@ def uses_of(roles: Roles) -> list[tuple[Use, Topic]]:
 
 
 def with_oriented_imu(first: FirstMessages, roles: Roles, say: Callable[[str], None]) -> Roles:
-    """Return the roles without an IMU for headings where what it says first has no orientation: a gyro alone.
+    """Return the roles without an IMU beside poses where what it says first has no orientation.
 
     Args:
         first: messages of its topic.
         roles: that were chosen.
         say: called with what was found.
     """
-    if roles.imu is None or roles.pose is None or roles.pose.type != NAV_SAT_FIX:
+    if roles.imu is None or roles.pose is None:
         return roles
+    fixes = roles.pose.type == NAV_SAT_FIX
     angles = _first_angles(first, roles.imu, IMU_VALUES[IMU])
     if angles is not None and not any(angles):
-        say(f"{roles.imu.name} has no orientation: its yaw rates are used")
+        left = "its yaw rates are used" if fixes else "roll and pitch are not those of an IMU"
+        say(f"{roles.imu.name} has no orientation: {left}")
         return replace(roles, imu=None)
     if angles is None:
-        say(f"{roles.imu.name} is silent: headings wait for it")
+        say(f"{roles.imu.name} is silent: {'headings wait' if fixes else 'roll and pitch wait'} for it")
     return roles
 
 
 def first_poses(first: FirstMessages, roles: Roles, say: Callable[[str], None]) -> FirstPoses:
-    """Return what the first poses show; of satellite fixes, what the IMU beside them does.
+    """Return what the first poses show, and the IMU beside them.
 
     Args:
         first: messages of these topics.
@@ -118,15 +120,17 @@ def first_poses(first: FirstMessages, roles: Roles, say: Callable[[str], None]) 
     """
     if roles.pose is None:
         return FirstPoses()
+    oriented = _first_angles(first, roles.imu, IMU_VALUES[IMU]) if roles.imu is not None else None
+    tilted = any(map(was_measured, _tilts(oriented)))
     if roles.pose.type == NAV_SAT_FIX:
-        angles = _first_angles(first, roles.imu, IMU_VALUES[IMU]) if roles.imu is not None else None
-        return FirstPoses(attitude=any(map(was_measured, _tilts(angles))))
+        return FirstPoses(attitude=tilted)
     kind = POSE_VALUES[roles.pose.type]
     angles = _first_angles(first, roles.pose, lambda message: kind(message)[3:7])
     positions = bool(angles) and not any(angles or ())
     if positions:
         say(f"the quaternions of {roles.pose.name} are no rotations: positions only")
-    return FirstPoses(positions, attitude=all(map(was_measured, _tilts(angles))))
+    tilts = all(map(was_measured, _tilts(angles)))
+    return FirstPoses(positions, attitude=tilts or tilted, tilts=tilts)
 
 
 def _tilts(angles: list[tuple[float, float, float] | None] | None) -> tuple[Floats, Floats]:

@@ -36,7 +36,7 @@ from slipwise.logs.options import LogOptions
 from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.wheel_readings import JointReadings, twists_of_wheels
 
-OLDEST_IMU = 0.2  # s; an older orientation says nothing of a fix
+OLDEST_IMU = 0.2  # s; an older orientation says nothing of a pose
 
 
 def _nobody(_: str) -> None:
@@ -194,40 +194,65 @@ class FirstPoses(NamedTuple):
 
     positions: bool = False  # they have no rotation: they are positions, as `calibrate` takes them
     attitude: bool = False  # roll and pitch are measured, as `calibrate` sees it: terms of gravity are tried
+    tilts: bool = False  # by the poses themselves, not by an IMU beside them
 
 
 NOTHING_SEEN = FirstPoses()
 
 
-class _Tilts:
-    """Tells whether a topic's quaternions measure roll and pitch."""
+class ImuOrientation:
+    """The last orientation that an IMU had."""
 
-    def __init__(self, *, known: bool) -> None:
+    def __init__(self) -> None:
+        self._last: tuple[float, OneAttitude] | None = None  # stamp [s]
+
+    def take(self, message: Any, t: float) -> None:
+        """Take a message; one without an orientation changes nothing."""
+        angles = rotation_of(*_values(IMU_VALUES, message))
+        if angles is not None:
+            roll, pitch, yaw = angles
+            self._last = (t, (yaw, roll, pitch))
+
+    def at(self, t: float) -> OneAttitude | None:
+        """Return (yaw, roll, pitch) [rad] at a stamp [s]; None where the last is of another time."""
+        return None if self._last is None or abs(t - self._last[0]) > OLDEST_IMU else self._last[1]
+
+
+class _Tilts:
+    """Roll and pitch of poses: a topic's quaternions measure them, or an IMU beside it."""
+
+    def __init__(self, imu: ImuOrientation | None, *, known: bool) -> None:
+        self._imu = imu
         self._roll = self._pitch = known
 
-    def take(self, roll: float, pitch: float) -> tuple[float, float] | tuple[None, None]:
-        """Return roll and pitch where both were measured by now."""
+    def take(self, roll: float, pitch: float, t: float) -> tuple[float | None, float | None]:
+        """Return roll and pitch at a stamp [s]: those given where both were measured by now."""
         if not (self._roll and self._pitch):
             self._roll = self._roll or was_measured(roll)
             self._pitch = self._pitch or was_measured(pitch)
-        return (roll, pitch) if self._roll and self._pitch else (None, None)
+        if self._roll and self._pitch:
+            return roll, pitch
+        oriented = None if self._imu is None else self._imu.at(t)
+        return (None, None) if oriented is None else oriented[1:]
 
 
-def to_pose(
+def to_pose(  # noqa: PLR0913 - the last four have defaults
     kind: str,
     options: LogOptions,
     say: Callable[[str], None] = _nobody,
     topic: str = "",
     seen: FirstPoses = NOTHING_SEEN,
+    imu: ImuOrientation | None = None,
 ) -> ToPose:
     """Return what makes a pose of a message of type `kind` and its stamp [s]; not of satellite fixes.
 
     `say` is called with what is found of `topic`.
     A quaternion that is no rotation is a position where poses were `seen` as such: its yaw is NaN.
-    Unless an attitude was seen, poses have a roll and a pitch from when on both were measured.
+    Unless tilts were seen, poses have a roll and a pitch from when on both were measured; before, those
+    of the `imu`, as `calibrate` gives them to planar poses.
     """
     values, offset, late = POSE_VALUES[kind], options.pose_yaw_offset, late_by(options)
-    tilts = _Tilts(known=seen.attitude)
+    tilts = _Tilts(imu, known=seen.tilts)
     covariances = _Covariances(lambda count: say(ZeroCovariance.of(topic, count).sentence))
 
     def pose(message: Any, t: float) -> Pose | None:
@@ -244,7 +269,7 @@ def to_pose(
         if angles is None:
             return Pose(t + late, x, y, math.nan, std_xy, frame=message.header.frame_id)
         roll, pitch, yaw = angles
-        robot = turned_one((yaw, *tilts.take(roll, pitch)), offset)
+        robot = turned_one((yaw, *tilts.take(roll, pitch, t)), offset)
         return Pose(t + late, x, y, robot[0], std_xy, std_yaw, message.header.frame_id, *robot[1:])
 
     return pose
@@ -259,23 +284,15 @@ def to_gyro(message: Any, t: float) -> Reading | None:
 class FixPoses:
     """Poses of satellite fixes with the orientation of an IMU, in the tangent plane at the first fix.
 
-    Without an IMU (`headed` is false) they are positions: their yaw is NaN.
+    Without an IMU they are positions: their yaw is NaN.
     """
 
-    def __init__(self, options: LogOptions, *, headed: bool = True) -> None:
-        self._headed, self._late = headed, late_by(options)
+    def __init__(self, options: LogOptions, imu: ImuOrientation | None) -> None:
+        self._imu, self._late = imu, late_by(options)
         self._offset = options.pose_yaw_offset
         self._origin: tuple[float, float, float] | None = None
-        self._imu: tuple[float, OneAttitude] | None = None  # stamp [s], of the robot
 
-    def take_imu(self, message: Any, t: float) -> None:
-        """Take an orientation."""
-        angles = rotation_of(*_values(IMU_VALUES, message))
-        if angles is not None:
-            roll, pitch, yaw = angles
-            self._imu = (t, turned_one((yaw, roll, pitch), self._offset))
-
-    def take_fix(self, message: Any, t: float) -> Pose | None:
+    def take(self, message: Any, t: float) -> Pose | None:
         """Return the pose of a fix; None without a fix, or without a heading of the same time."""
         latitude, longitude, altitude, status, *variances = POSE_VALUES[NAV_SAT_FIX](message)
         if not (math.isfinite(latitude) and math.isfinite(longitude)) or status < 0.0:
@@ -285,11 +302,12 @@ class FixPoses:
         x, y, _ = in_tangent_plane(ecef(*_row(fix)), *_row(self._origin))[0].tolist()
         std_xy, sort = deviation(*variances), fix_of_status(status)
         frame = message.header.frame_id
-        if not self._headed:
+        if self._imu is None:
             return Pose(t + self._late, x, y, math.nan, std_xy, frame=frame, fix=sort)
-        if self._imu is None or abs(t - self._imu[0]) > OLDEST_IMU:
+        oriented = self._imu.at(t)
+        if oriented is None:
             return None
-        yaw, roll, pitch = self._imu[1]
+        yaw, roll, pitch = turned_one(oriented, self._offset)
         return Pose(t + self._late, x, y, yaw, std_xy, frame=frame, roll=roll, pitch=pitch, fix=sort)
 
 

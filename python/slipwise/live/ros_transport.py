@@ -24,6 +24,7 @@ from slipwise.live.ros_samples import (
     NOTHING_SEEN,
     FirstPoses,
     FixPoses,
+    ImuOrientation,
     ToPose,
     to_command,
     to_gyro,
@@ -215,16 +216,16 @@ class RosTransport:
         return f"/{self._name}/{topic}"
 
     def _subscribe_roles(self, on_sample: OnSample) -> None:
-        fixes = FixPoses(self._options, headed=self._roles.imu is not None)
+        imu = None if self._roles.imu is None else ImuOrientation()
         kinds: dict[str, str] = {}
         converters: dict[str, list[ToSample]] = {}  # one topic may be both wheels and pose
         for use, topic in uses_of(self._roles):
             kinds[topic.name] = topic.type
-            converters.setdefault(topic.name, []).append(self._converter(use, topic, fixes))
+            converters.setdefault(topic.name, []).append(self._converter(use, topic, imu))
         for name, found in converters.items():
             self._take(name, kinds[name], _all_of(found), on_sample)
 
-    def _converter(self, use: Use, topic: Topic, fixes: FixPoses) -> ToSample:
+    def _converter(self, use: Use, topic: Topic, imu: ImuOrientation | None) -> ToSample:
         kind, options = topic.type, self._options
         match use:
             case "command":
@@ -233,16 +234,17 @@ class RosTransport:
                 return to_wheels(kind, options, self._notices.put, topic.name)
             case "pose":
                 if kind == NAV_SAT_FIX:
-                    return fixes.take_fix
-                return to_pose(kind, options, self._notices.put, topic.name, self._seen)
+                    return FixPoses(options, imu).take
+                return to_pose(kind, options, self._notices.put, topic.name, self._seen, imu)
             case "orientation":
-                return fixes.take_imu
+                assert imu is not None
+                return imu.take
             case "gyro":
                 return to_gyro
             case "other":
-                alone = FixPoses(options, headed=False)
-                pose = to_pose(kind, options, self._notices.put, topic.name) if kind != NAV_SAT_FIX else None
-                return _from_source(pose or alone.take_fix, topic.name)
+                alone = FixPoses(options, None).take
+                pose = to_pose(kind, options, self._notices.put, topic.name) if kind != NAV_SAT_FIX else alone
+                return _from_source(pose, topic.name)
 
     def _take(self, topic: str, kind: str, convert: ToSample, on_sample: OnSample) -> None:
         """Subscribe; a message that cannot be read is said once, and left out."""

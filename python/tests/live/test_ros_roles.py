@@ -75,8 +75,9 @@ def header() -> object:
     return made("std_msgs/msg/Header", made("builtin_interfaces/msg/Time", 12, 0), "map")
 
 
-def imu(*, oriented: bool) -> bytes:
-    q = made("geometry_msgs/msg/Quaternion", 0.0, 0.0, 0.0, 1.0 if oriented else 0.0)
+def imu(*, oriented: bool, roll: float = 0.0) -> bytes:
+    x, w = (np.sin(roll / 2.0), np.cos(roll / 2.0)) if oriented else (0.0, 0.0)
+    q = made("geometry_msgs/msg/Quaternion", x, 0.0, 0.0, w)
     rate, none = made("geometry_msgs/msg/Vector3", 0.0, 0.0, 0.3), np.zeros(9)
     return bytes(STORE.serialize_cdr(made(IMU, header(), q, none, rate, none, rate, none), IMU))
 
@@ -132,7 +133,7 @@ def test_poses_without_rotations_are_positions_as_calibrate_takes_them(w: float)
     wire = Wire({"/lidar": [lidar(w)] * 3})
     first = FirstMessages(wire, topics_of(roles(LIDAR)))
     seen = first_poses(first, roles(LIDAR), said.append)
-    positions, attitude = seen
+    positions, attitude, _ = seen
     assert positions is (w == 0.0)
     assert not attitude
     assert said == (["the quaternions of /lidar are no rotations: positions only"] if positions else [])
@@ -149,9 +150,11 @@ def test_poses_with_a_roll_and_a_pitch_are_learned_from_with_terms_of_gravity() 
         return first_poses(FirstMessages(Wire(messages), topics_of(chosen)), chosen, print)
 
     tilted = [lidar(1.0), lidar(0.8, 0.48, 0.36), lidar(1.0)]
-    assert seen(roles(LIDAR), {"/lidar": tilted}) == (False, True)
+    assert seen(roles(LIDAR), {"/lidar": tilted}) == FirstPoses(attitude=True, tilts=True)
     rolled = [lidar(1.0), lidar(0.96, 0.28), lidar(1.0)]
-    assert seen(roles(LIDAR), {"/lidar": rolled}) == (False, False)
+    assert seen(roles(LIDAR), {"/lidar": rolled}) == FirstPoses()
+    beside = {"/lidar": [lidar(1.0)] * 3, "/imu": [imu(oriented=True, roll=0.1)] * 3}
+    assert seen(roles(LIDAR, headed=True), beside) == FirstPoses(attitude=True)
     fixes = roles(FIX, headed=True)
     level, none = (seen(fixes, {"/imu": [imu(oriented=oriented)] * 3}) for oriented in (True, False))
     assert level == none

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slipwise.errors import SettingsError
-from slipwise.live.ros_samples import FixPoses, to_command, to_pose, to_wheels
+from slipwise.live.ros_samples import FirstPoses, FixPoses, ImuOrientation, to_command, to_pose, to_wheels
 from slipwise.live.samples import Command, Pose, Wheels
 from slipwise.live.stamps import Stamps, seconds_of
 from slipwise.logs.messages import (
@@ -122,29 +122,56 @@ def fix(latitude: float, status: int = 0) -> Made:
 
 
 def test_fixes_are_poses_with_the_heading_of_an_imu_of_the_same_time() -> None:
-    fixes = FixPoses(LogOptions())
-    assert fixes.take_fix(fix(48.0), 1.0) is None  # no heading yet
+    imu = ImuOrientation()
+    fixes = FixPoses(LogOptions(), imu)
+    assert fixes.take(fix(48.0), 1.0) is None  # no heading yet
     q = Made(x=0.0, y=0.0, z=math.sin(0.4), w=math.cos(0.4))
-    fixes.take_imu(Made(orientation=q, orientation_covariance=np.zeros(9)), 1.9)
-    found = fixes.take_fix(fix(48.0 + 1e-5), 2.0)
+    imu.take(Made(orientation=q, orientation_covariance=np.zeros(9)), 1.9)
+    found = fixes.take(fix(48.0 + 1e-5), 2.0)
     assert found is not None
     assert (found.x, found.y) == (pytest.approx(0.0, abs=1e-6), pytest.approx(1.112, abs=1e-2))
     assert found.yaw == pytest.approx(0.8)
     assert (found.roll, found.pitch) == (pytest.approx(0.0), pytest.approx(0.0))
     assert found.std_xy == pytest.approx(0.1)
-    assert fixes.take_fix(fix(48.0, status=-1), 2.0) is None
-    assert fixes.take_fix(fix(48.0), 9.0) is None  # the heading is old
+    assert fixes.take(fix(48.0, status=-1), 2.0) is None
+    assert fixes.take(fix(48.0), 9.0) is None  # the heading is old
+
+
+def attitude_of(found: Pose | None) -> tuple[float | None, float | None]:
+    assert found is not None
+    return found.roll, found.pitch
+
+
+def tilted(roll: float) -> Made:
+    return Made(x=math.sin(roll / 2.0), y=0.0, z=0.0, w=math.cos(roll / 2.0))
+
+
+def test_planar_poses_have_roll_and_pitch_of_an_imu_of_the_same_time_and_poses_in_space_their_own() -> None:
+    imu = ImuOrientation()
+    planar, spatial = (
+        to_pose(POSE_STAMPED, LogOptions(), seen=FirstPoses(attitude=True, tilts=tilts), imu=imu)
+        for tilts in (False, True)
+    )
+    level, leaning = (
+        Made(header=header(), pose=Made(position=Made(x=1.0, y=2.0, z=0.0), orientation=tilted(roll)))
+        for roll in (0.0, 0.3)
+    )
+    assert attitude_of(planar(level, 1.0)) == (None, None)
+    imu.take(Made(orientation=tilted(0.1), orientation_covariance=np.zeros(9)), 1.9)
+    assert attitude_of(planar(level, 2.0)) == (pytest.approx(0.1), pytest.approx(0.0))
+    assert attitude_of(spatial(leaning, 2.0)) == (pytest.approx(0.3), pytest.approx(0.0))
+    assert attitude_of(planar(level, 2.2)) == (None, None)  # that of the IMU is old
 
 
 def test_fixes_without_an_imu_are_positions() -> None:
-    fixes = FixPoses(LogOptions(), headed=False)
-    first, second = fixes.take_fix(fix(48.0), 1.0), fixes.take_fix(fix(48.0 + 1e-5), 2.0)
+    fixes = FixPoses(LogOptions(), None)
+    first, second = fixes.take(fix(48.0), 1.0), fixes.take(fix(48.0 + 1e-5), 2.0)
     assert first is not None
     assert second is not None
     assert math.isnan(second.yaw)
     assert second.y - first.y == pytest.approx(1.112, abs=1e-2)
     assert second.std_xy == pytest.approx(0.1)
-    assert fixes.take_fix(fix(48.0, status=-1), 3.0) is None
+    assert fixes.take(fix(48.0, status=-1), 3.0) is None
 
 
 def test_stamps_are_those_of_headers_and_others_are_dated_by_their_clock() -> None:
