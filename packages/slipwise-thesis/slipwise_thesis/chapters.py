@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from slipwise.errors import SettingsError, SlipwiseError
+from slipwise.stop_signals import kept_from_children
 from slipwise_thesis.chapter2 import chapter2_figures
 from slipwise_thesis.chapter3 import chapter3_figures
 from slipwise_thesis.chapter4 import chapter4_figures
@@ -110,7 +110,8 @@ def reproduce(
         WORKERS, mp_context=context, initializer=_start, initargs=(plan, reports)
     ) as pool:
         try:
-            futures = [pool.submit(_make, chapter) for chapter in chapters]
+            with kept_from_children():
+                futures = [pool.submit(_make, chapter) for chapter in chapters]
             _follow(futures, reports, progress)
             made = [future.result() for future in futures]
         except BaseException as error:
@@ -154,7 +155,6 @@ class _Worker:
 
 
 def _start(plan: FixturePlan, reports: SimpleQueue[tuple[str, str, float]]) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the parent ends the workers
     load_simulator()
     _Worker.fixture = Fixture(seed=plan.seed, data=plan.data, size=plan.size)
     _Worker.reports = reports

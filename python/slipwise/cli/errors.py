@@ -12,8 +12,8 @@ from collections.abc import Callable
 import typer
 
 from slipwise.addresses import masked
-from slipwise.cli.stop_signals import Interrupt
 from slipwise.errors import SlipwiseError
+from slipwise.stop_signals import Interrupt
 
 BAD_USE = 2
 _UsageError = typer.BadParameter.__mro__[1]  # typer's own copy of click, or click: wherever this typer has it

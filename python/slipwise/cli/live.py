@@ -17,7 +17,7 @@ from slipwise.cli.options import (
     optional,
     takes_log_options,
 )
-from slipwise.cli.stop_signals import Stopped, taken_by
+from slipwise.stop_signals import Stopped, taken_by
 
 if TYPE_CHECKING:
     from types import FrameType

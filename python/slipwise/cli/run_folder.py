@@ -12,9 +12,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from slipwise.cli.stop_signals import held
 from slipwise.files import output_errors, write_text_whole
 from slipwise.part_folder import is_locked, locked
+from slipwise.stop_signals import held
 
 if TYPE_CHECKING:
     from slipwise.calibration import Settings

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-import signal
 import tempfile
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -14,6 +13,7 @@ from concurrent.futures.process import BrokenProcessPool
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.learned_rows import LogRows, learn_task
 from slipwise.fleet.scheduler import ATTEMPTS, DIED, Outcome
+from slipwise.stop_signals import kept_from_children
 
 PATIENCE = 10.0  # s for a worker to end
 Work = Callable[[LogTask], LogRows]
@@ -43,7 +43,7 @@ class ProcessScheduler:
             while True:
                 while free and (task := next(waiting, None)) is not None:
                     pool = free.pop()
-                    running[pool.submit(self._work, task)] = pool, task, 1
+                    running[self._submit(pool, task)] = pool, task, 1
                 if not running:
                     return
                 done, _ = wait(running, return_when=FIRST_COMPLETED)
@@ -54,12 +54,16 @@ class ProcessScheduler:
                         pool.shutdown(wait=False)
                         pool = _pool(folder)
                         if attempt < ATTEMPTS:
-                            running[pool.submit(self._work, task)] = pool, task, attempt + 1
+                            running[self._submit(pool, task)] = pool, task, attempt + 1
                             continue
                     free.append(pool)
                     yield _outcome(task, future, problem)
         finally:
             _end([*free, *(pool for pool, _, _ in running.values())])
+
+    def _submit(self, pool: ProcessPoolExecutor, task: LogTask) -> Future[LogRows]:
+        with kept_from_children():  # the first task starts the process
+            return pool.submit(self._work, task)
 
 
 def _pool(folder: str) -> ProcessPoolExecutor:
@@ -68,8 +72,7 @@ def _pool(folder: str) -> ProcessPoolExecutor:
 
 
 def _begin(folder: str) -> None:
-    """Leave to the parent what is its own: Ctrl-C, and the temporary files of a worker that is killed."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    """Leave to the parent the temporary files of a worker that is killed."""
     tempfile.tempdir = folder
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -53,6 +54,16 @@ def _lives(group: int) -> bool:
     return True
 
 
+def children_of(pid: int) -> list[str]:
+    """Return the command lines of a process's children."""
+    children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    lines = []
+    for child in children:
+        with contextlib.suppress(OSError):
+            lines.append(Path(f"/proc/{child}/cmdline").read_text())
+    return lines
+
+
 @pytest.mark.slow
 def test_interrupted_fleet_leaves_whole_files_and_no_process(folder: Path) -> None:
     write_fleet(folder, 4, 60.0)
@@ -72,6 +83,23 @@ def test_interrupted_fleet_leaves_whole_files_and_no_process(folder: Path) -> No
     assert kept
     assert all(parquet.read_table(path).num_rows for path in kept)
     assert not list(Path("out").rglob(".slipwise-*"))
+
+
+@pytest.mark.slow
+def test_ctrl_c_while_workers_of_a_fleet_begin_is_said_in_one_line(folder: Path) -> None:
+    if not Path("/proc/self/task").exists():
+        pytest.skip("no /proc to see whether a worker has begun")
+    write_fleet(folder, 2, 60.0)
+    command = [sys.executable, "-m", "slipwise", "fleet", "logs", "-o", "out", "--workers", "2"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True) as process:
+        while not any("spawn_main" in each for each in children_of(process.pid)):
+            assert process.poll() is None
+            time.sleep(0.002)
+        time.sleep(0.05)  # Python begins: it has no handler of ours yet
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=60.0)
+    assert process.returncode == 2
+    assert said.decode().splitlines() == ["slipwise: stopped by the user; no half-written file is left"]
 
 
 @pytest.mark.parametrize(

@@ -49,6 +49,19 @@ def held() -> Iterator[None]:
             signal.raise_signal(sent)
 
 
+@contextlib.contextmanager
+def kept_from_children() -> Iterator[None]:
+    """Start processes that Ctrl-C does not reach, from their first instruction on: their parent ends them."""
+    from multiprocessing import resource_tracker
+
+    resource_tracker.ensure_running()  # to start it, multiprocessing would let SIGINT through again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 class Interrupt:
     """Raises Stopped on a signal, and remembers it.
 
