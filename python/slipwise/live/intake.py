@@ -7,7 +7,9 @@ import math
 from dataclasses import replace
 
 from slipwise.calibration.learner_answers import Event
+from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.calibration.sloping_ground import SLOPE_BASES
 from slipwise.live.clock_watch import Clock, ClockWatch
 from slipwise.live.command_ends import CommandEnds
 from slipwise.live.command_stops import SAID_EVERY, LiveCommandStops
@@ -27,11 +29,16 @@ from slipwise.live.samples import (
     Wheels,
 )
 from slipwise.live.surface_watch import SurfaceWatch
+from slipwise.logs.attitude import was_measured
 from slipwise.logs.findings.clocks import ClockSetBack
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.gyro import COLUMN as GYRO
 
 MOST_FRAMES = 1000  # whose names are kept
+TILTED_LATER = (
+    "the first poses were level, and now they have roll and pitch: these are used, but terms of gravity are "
+    "not tried; `slipwise calibrate` of a recording tries them, as a node does that starts on a slope"
+)
 
 
 class Intake:
@@ -54,6 +61,8 @@ class Intake:
         self._recent = RecentLog(input_name, learner.settings.segment.unknown_after)
         self._clock = ClockWatch()
         self.surfaces = SurfaceWatch(learner, said)
+        auto = learner.settings.auto.bases if learner.settings.basis == "auto" else ()
+        self._level = set(AUTO_BASES) <= set(auto) and not set(SLOPE_BASES) & set(auto)
         self.turning = Turning()
         self._looked_at = math.inf  # s, when it was looked how commands end
         self._frames: dict[str, int] = {}
@@ -187,6 +196,8 @@ class Intake:
         if pose.roll is not None and pose.pitch is not None:
             self._learner.push_attitude(pose.t, pose.roll, pose.pitch)
             self._say_mounting(pose.t)
+            if self._level and was_measured(pose.roll) and was_measured(pose.pitch):
+                self._said.once(pose.t, "attitude", TILTED_LATER)
         number = self._frame_number(pose.frame)
         if self._stops is not None:
             self._stops.take_pose(pose, number)

@@ -78,9 +78,11 @@ def test_the_column_at_start_holds_start_values_where_nothing_is_handed_on() -> 
 @pytest.mark.parametrize("attitude", [False, True])
 def test_terms_of_gravity_are_tried_where_poses_are_said_to_have_an_attitude(attitude: bool) -> None:
     (run,) = prepare_run(hilly_log(1, Hills(seconds=60.0)), "command")
-    built, _ = run_node(list(samples_of(run)), LiveTable(attitude=attitude), "command", "auto")
+    built, transport = run_node(list(samples_of(run)), LiveTable(attitude=attitude), "command", "auto")
     model = built.learning.learner.model(limits=False)
     assert any(".gy" in name for name in model.parameters) == attitude
+    said = [text for text in transport.said if "terms of gravity are not tried" in text]
+    assert len(said) == (0 if attitude else 1)
 
 
 class Compared(Scripted):
