@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from slipwise.evaluation import EvaluationOptions, SequenceEvaluation
     from slipwise.logs import Log, LogOptions
 
+EVEN = 0.01  # of an error; so small a difference is none
+
 
 @dataclass(frozen=True)
 class MemoryQuestion:
@@ -104,7 +106,7 @@ def _show(out: Output, sequence: SequenceEvaluation) -> None:
         rows,
     )
     if sequence.gain is not None:
-        out.line(_of_the_memory(*sequence.gain))
+        out.line(of_the_memory(*sequence.gain))
     from slipwise.cli.tables import show_memory_changes, show_surfaces
 
     show_surfaces(out, sequence.learned.surfaces)
@@ -115,11 +117,14 @@ def _pair(position: float, heading: float) -> str:
     return f"{position:.3f} {heading:.3f}"
 
 
-def _of_the_memory(position: float, heading: float) -> str:
+def of_the_memory(position: float, heading: float) -> str:
     """Say whether the memory pays, against one learner that goes on from log to log."""
-    if max(position, heading) < 1.0:
+    low, high = sorted((position, heading))
+    if low > 1.0 - EVEN and high < 1.0 + EVEN:
+        worth = "no difference; leave --memory out, unless you need the names of surfaces"
+    elif high < 1.0 + EVEN:
         worth = "the memory pays"
-    elif min(position, heading) >= 1.0:
+    elif low > 1.0 - EVEN:
         worth = "leave --memory out, unless you need the names of surfaces"
     else:
         worth = "better at the one, worse at the other"
