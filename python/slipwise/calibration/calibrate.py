@@ -32,6 +32,7 @@ from slipwise.calibration.prepared_run import (
     used_sources,
 )
 from slipwise.calibration.result import Calibration
+from slipwise.calibration.same_log import learned_before
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.shortage import shortage_advice, silence
 from slipwise.calibration.sloping_ground import for_the_ground_of
@@ -130,22 +131,27 @@ def calibrate_by(
     )
 
 
-def model_of_log(learned: Learned, log: Log, input_name: str, settings: Settings) -> tuple[Model, Judgement]:
-    """Return the model that `calibrate` makes of a log, where a learner has learned all of it.
+def model_of_log(
+    learned: Learned, log: Log, input_name: str, settings: Settings, start: Model | None = None
+) -> tuple[Model, Judgement]:
+    """Return the model that `calibrate` makes of a log that a learner has learned, begun with `start`.
 
     Raises:
         LogError: no model holds what was learned.
     """
     windows = learning_windows(prepare_run(log, input_name), input_name, settings)
-    found = found_contradictions(learned, windows.drive, (log, input_name, settings))
+    found = found_contradictions(learned, windows.drive, (log, input_name, settings), start)
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     return model_of(content, log, found), judged.judgement
 
 
 def found_contradictions(
-    learned: Learned, drive: tuple[PreparedRun, ...], given: tuple[Log, str, Settings]
+    learned: Learned,
+    drive: tuple[PreparedRun, ...],
+    given: tuple[Log, str, Settings],
+    start: Model | None = None,
 ) -> tuple[Finding, ...]:
-    """Return where poses and inputs contradict each other in what was learned."""
+    """Return where poses and inputs contradict each other, and what `start` had learned already."""
     log, input_name, settings = given
     evidence = learned.evidence
     if evidence is None:
@@ -159,7 +165,11 @@ def found_contradictions(
         sensor_yaw=settings.sensor_extrinsics.yaw,
     )
     unknown_after = settings.segment.unknown_after
-    return (*findings_in(seen), *findings_of_log(WholeLog(log, input_name, unknown_after)))
+    return (
+        *findings_in(seen),
+        *findings_of_log(WholeLog(log, input_name, unknown_after)),
+        *learned_before(log, start),
+    )
 
 
 def judged_content(

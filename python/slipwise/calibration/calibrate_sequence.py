@@ -20,6 +20,7 @@ from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptio
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.prepared_run import PreparedRun, choose_input, prepare_run, unused_runs
 from slipwise.calibration.result import Calibration
+from slipwise.calibration.same_log import refuse_same_log
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.surface_sections import with_memory
@@ -53,7 +54,8 @@ def calibrate_sequence(
         progress: called with the fraction done, 0 to 1.
 
     Raises:
-        LogError: a log has no such input or no poses, all have no window to learn from, or no model holds it.
+        LogError: a log has no such input or no poses, all have no window to learn from, two are the same
+            drive, or no model holds it.
         SettingsError: a basis is unknown, or the estimator has no memory.
         ModelError: the model to begin with has another input, or no memory of surfaces.
     """
@@ -71,6 +73,7 @@ def calibrate_sequence(
         settings = for_the_ground_of(logs[0], settings)
     input_name = choose_input(logs[0], input or (None if start is None else start.content.input))
     log = joined(list(logs))
+    refuse_same_log(log)
     drives = _drives(logs, input_name)
     windows = learning_windows(tuple(run for drive in drives for run in drive), input_name, settings)
     refuse_empty(windows, log)
@@ -80,7 +83,7 @@ def calibrate_sequence(
     )
     assert sequence.learned is not None  # it was asked to be kept
     learned = learned_by(sequence.learned)
-    found = found_contradictions(learned, windows.drive, (log, input_name, settings))
+    found = found_contradictions(learned, windows.drive, (log, input_name, settings), start)
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     kept = learned.kept.structure, learned.kept.motion
     model = model_of(with_memory(content, sequence.learner, kept, start), log, found)

@@ -10,10 +10,11 @@ from slipwise.calibration.calibrate import JUDGING_HORIZONS
 from slipwise.calibration.calibrate_sequence import settings_of
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.learner import CASCADED
+from slipwise.calibration.same_log import logs_of_both, twice_in_both
 from slipwise.calibration.surface_sections import begin_with, known_before, structure_of, surface_sections
 from slipwise.errors import ModelError
 from slipwise.models.model import Model
-from slipwise.models.schema import LabelSection, SurfaceSection
+from slipwise.models.schema import LabelSection, SurfaceSection, VerdictSection
 
 _VEHICLE = ("vehicle", "sensor_extrinsics")  # sections of the settings that are the robot's
 _FORM = ("dynamics", "delays", "clock_offset", "response", "sensor_extrinsics", "wheelbase")  # of the model
@@ -85,11 +86,26 @@ def _with_surfaces(first: Model, second: Model, sections: list[SurfaceSection]) 
                 )
                 if labels
                 else None,
+                "verdict": _reserved(first, second),
                 "provenance": one.model_copy(
                     update={"logs": [*one.logs, *(log for log in two.logs if log not in one.logs)]}
                 ),
             }
         )
+    )
+
+
+def _reserved(first: Model, second: Model) -> VerdictSection:
+    """Return the verdict on the first model, qualified where what both have learned counts twice."""
+    verdict, both = first.content.verdict, logs_of_both(first, second)
+    if not (both and verdict.good):
+        return verdict
+    sentence = twice_in_both(both)
+    return verdict.model_copy(
+        update={
+            "sentence": f"{verdict.sentence} {sentence}",
+            "reservations": [*verdict.reservations, sentence],
+        }
     )
 
 

@@ -221,7 +221,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             )
         learned = self._learned(model, limits=limits)
         if log is not None:
-            made, judgement = model_of_log(learned, log, self._input, self._settings)
+            made, judgement = model_of_log(learned, log, self._input, self._settings, self._start)
             return model_of(self._remembered(made.content, learned), log, ()), judgement
         sensors = Sensors(self._wheels, "", self._gyro_alone)
         found = self.found = (*findings_in(self._seen(model.evidence)), *self._of_log)

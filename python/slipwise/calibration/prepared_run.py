@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.same_log import refuse_same_log
 from slipwise.errors import LogError
 from slipwise.logs.gyro import gyro_alone, gyro_rows
 from slipwise.logs.held import HeldSum
@@ -115,10 +116,11 @@ def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
     """Choose the inputs of every run.
 
     Raises:
-        LogError: no run has such inputs, or no run has poses.
+        LogError: no run has such inputs, no run has poses, or two files hold the same drive.
         SettingsError: there is no such input.
     """
     input_name = input_name_of(input_name, where="--input")
+    refuse_same_log(log)
     drive = []
     alone = gyro_alone(log.runs)
     for index, run in enumerate(log.runs):

@@ -102,23 +102,29 @@ def merge(model: ModelFile, second: Second, output: Output, json: Json = None) -
     from dataclasses import asdict
 
     from slipwise.calibration.merge_surfaces import merge_surfaces
+    from slipwise.calibration.same_log import logs_of_both, twice_in_both
+    from slipwise.cli.model_names import named_models
     from slipwise.cli.output import Column
     from slipwise.cli.output import Output as Printer
     from slipwise.cli.tables import show_files, show_surfaces
     from slipwise.cli.writable import refuse_unwritable
-    from slipwise.models import load_model
 
     out = Printer(json)
     refuse_unwritable(output, out.written_file, inputs=[model, second])
-    learned, done = merge_surfaces(load_model(model), load_model(second))
+    one, other = named_models([model, second]).values()
+    learned, done = merge_surfaces(one, other)
+    both = logs_of_both(one, other)
     files = {"model": learned.save(output)}
     out.document(
-        _document("surfaces merge", learned) | {"files": files, "merged": [asdict(each) for each in done]}
+        _document("surfaces merge", learned)
+        | {"files": files, "merged": [asdict(each) for each in done], "logs_of_both": both}
     )
     rows = [
         (each.name, each.became or "dropped", "not distinguished from it" if each.merged else "")
         for each in done
     ]
+    if both:
+        out.line(twice_in_both(both))
     out.table(f"Surfaces of {second.name}", (Column("name"), Column("is now"), Column("")), rows)
     show_surfaces(out, learned.content.surfaces)
     show_files(out, files)

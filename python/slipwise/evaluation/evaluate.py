@@ -18,6 +18,7 @@ from slipwise.calibration.prepared_run import (
     prepare_run,
     unused_runs,
 )
+from slipwise.calibration.same_log import learned_from
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.errors import LogError, SettingsError
@@ -161,7 +162,7 @@ def contest_of(
             where=", ".join(source.path for source in log.sources[:3]),
             advice=_more_windows(sets),
         )
-    learned_from_this = frozenset(name for name, model in options.models.items() if _learned_from(log, model))
+    learned_from_this = frozenset(name for name, model in options.models.items() if learned_from(log, model))
     contest = Contest(
         input_name,
         settings,
@@ -183,9 +184,3 @@ def _more_windows(sets: Sequence[WindowSet]) -> str:
             f"ask for shorter --horizons, such as {SHORTEST_HORIZON:g}{f' ({rejected})' if rejected else ''}"
         )
     return rejected or f"it needs poses and inputs together for {4.0 * sets[0].length:g} s at least"
-
-
-def _learned_from(log: Log, model: Model) -> bool:
-    """Whether the model file was learned from one of these very logs; then it does not count as causal."""
-    hashes = {reference.sha256 for reference in model.content.provenance.logs}
-    return any(source.sha256 in hashes for source in log.sources)

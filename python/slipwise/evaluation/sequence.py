@@ -12,6 +12,7 @@ import numpy as np
 from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions, go_on, learn_sequence
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import choose_input, prepare_run
+from slipwise.calibration.same_log import refuse_same_log
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.errors import LogError, SettingsError
@@ -19,6 +20,7 @@ from slipwise.evaluation.evaluate import EvaluationOptions, Report, evaluate
 from slipwise.evaluation.methods import method_info
 from slipwise.evaluation.result import Evaluation
 from slipwise.logs.log import Log
+from slipwise.logs.open_log import joined
 
 REMEMBERING = "auto"  # the method that is given a memory
 FIRST = 10  # windows that tell how soon a surface is known
@@ -106,7 +108,7 @@ def evaluate_sequence(
         progress: called with what is done, and the fraction.
 
     Raises:
-        LogError: a log has no such input, no poses, or no window of any horizon.
+        LogError: a log has no such input, no poses, or no window of any horizon, or two are the same drive.
         SettingsError: a method, a basis or a horizon is wrong, or `auto` is not among the methods.
         ModelError: the model to begin with has another input, or no memory of surfaces.
     """
@@ -122,6 +124,7 @@ def evaluate_sequence(
         method_info(name, options.models)
     if not logs:
         raise LogError("a sequence needs a log", where="--memory", advice="give logs in the order of time")
+    refuse_same_log(joined([log for _, log in logs]))
     memory = options.memory or SequenceOptions()
     input_name = choose_input(logs[0][1], input or (memory.start.content.input if memory.start else None))
     drives = [prepare_run(log, input_name) for _, log in logs]

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Logs that are learned a second time: their SHA-256 says it, whatever their files are called."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from slipwise.errors import LogError
+from slipwise.logs.findings.finding import Finding
+
+if TYPE_CHECKING:
+    from slipwise.logs.log import Log, Run
+    from slipwise.models.model import Model
+
+_TWICE = "what it has seen of it counts twice, standard deviations are too small, and figures prove little"
+
+
+def refuse_same_log(log: Log) -> None:
+    """Refuse files that were joined to one log, where two of them hold the same drive.
+
+    Parts of one file that lie at other times are other drives.
+
+    Raises:
+        LogError: a file is given twice, or a copy of it.
+    """
+    counted = Counter(source.sha256 for source in log.sources)
+    again = {source.path: source.sha256 for source in log.sources if counted[source.sha256] > 1}
+    seen: dict[tuple[str, bytes], str] = {}
+    for run in log.runs:
+        path = run.files[0] if run.files else ""
+        if path not in again:
+            continue
+        drive = again[path], _measured(run)
+        if drive in seen:
+            what = "a log is given twice" if seen[drive] == path else f"the same log as {seen[drive]}"
+            raise LogError(what, where=path, advice="give it once")
+        seen[drive] = path
+
+
+def _measured(run: Run) -> bytes:
+    """Return what tells drives of one file apart: stamps, positions and inputs."""
+    columns = [run.poses.t, run.poses.x, run.poses.y]
+    for inputs in (run.commands, run.wheels):
+        columns += [] if inputs is None else [inputs.t, inputs.v, inputs.omega]
+    return b"".join(column.tobytes() for column in columns)
+
+
+def learned_from(log: Log, model: Model) -> tuple[str, ...]:
+    """Return the files of a log that a model has learned from; predictions of these are not causal."""
+    hashes = {reference.sha256 for reference in model.content.provenance.logs}
+    return tuple(dict.fromkeys(source.path for source in log.sources if source.sha256 in hashes))
+
+
+def learned_before(log: Log, start: Model | None) -> tuple[Finding, ...]:
+    """Return what is to be said where learning goes on, on a log that the model to begin with has learned."""
+    known = () if start is None else learned_from(log, start)
+    if not known:
+        return ()
+    sentence = f"the model to begin with has learned {', '.join(known)} already: {_TWICE}"
+    advice = "Go on with logs that it has not learned, or with other parts of them (--start, --end)."
+    return (Finding("learned-before", sentence, (advice,), spoils=False, reserves=True),)
+
+
+def logs_of_both(first: Model, second: Model) -> tuple[str, ...]:
+    """Return the logs of the first model, by their paths, that the second has learned too."""
+    hashes = {reference.sha256 for reference in second.content.provenance.logs}
+    return tuple(each.path for each in first.content.provenance.logs if each.sha256 in hashes)
+
+
+def twice_in_both(logs: tuple[str, ...]) -> str:
+    """Say what it means that two models whose surfaces are joined have learned from the same logs."""
+    return (
+        f"Both models have learned {', '.join(logs)}, which counts twice: standard deviations of surfaces "
+        "that became one are too small. Join models that have no log in common."
+    )

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A log is learned once: a second time it is refused, or said where learning goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from cli.conftest import Result
+from sample_surfaces import FIRM, LOOSE, floor_log
+
+from slipwise.calibration.calibrate_sequence import calibrate_sequence
+from slipwise.calibration.same_log import learned_from, refuse_same_log
+from slipwise.logs import open_log, save_log
+from slipwise.logs.open_log import joined
+from slipwise.models import load_model
+
+Slipwise = Callable[..., Result]
+WHEEL = ("--input", "wheel")
+
+
+@pytest.fixture
+def log(folder: Path) -> Path:
+    path = folder / "base.csv"
+    save_log(floor_log(FIRM, 1), path)
+    return path
+
+
+@pytest.fixture
+def copy(log: Path) -> Path:
+    path = log.with_name("copy.csv")
+    path.write_bytes(log.read_bytes())
+    return path
+
+
+def test_a_log_given_twice_is_refused(slipwise: Slipwise, log: Path, copy: Path) -> None:
+    calls = [("calibrate",), ("calibrate", "--memory"), ("evaluate",), ("evaluate", "--memory")]
+    for call in calls:
+        same = slipwise(*call, log, log)
+        assert same.code == 2
+        assert same.line == f"a log is given twice ({log}): give it once"
+        other = slipwise(*call, log, copy)
+        assert other.code == 2
+        assert other.line == f"the same log as {log} ({copy}): give it once"
+
+
+def test_parts_of_one_file_are_other_drives(log: Path) -> None:
+    parts = [open_log(log, end=30.0), open_log(log, start=30.0)]
+    refuse_same_log(joined(parts))
+    _, sequence = calibrate_sequence(parts, input="wheel")
+    assert len(sequence.logs) == 2
+
+
+def test_two_runs_of_one_file_are_other_drives(folder: Path) -> None:
+    runs = [replace(floor_log(slip, 1).runs[0], name=name) for name, slip in (("a", FIRM), ("b", LOOSE))]
+    path = folder / "runs.csv"
+    save_log(replace(floor_log(FIRM, 1), runs=tuple(runs)), path)
+    refuse_same_log(open_log(path))
+
+
+def test_going_on_with_a_log_that_was_learned_is_a_reservation(
+    slipwise: Slipwise, folder: Path, log: Path, copy: Path
+) -> None:
+    first, second = folder / "mem.yaml", folder / "on.yaml"
+    learn = ("calibrate", "--memory", *WHEEL, "--no-report")
+    assert slipwise(*learn, log, "-o", first).code == 0
+    assert load_model(first).verdict.reservations == []
+    on = slipwise(*learn, first, copy, "-o", second)
+    assert f"The model to begin with has learned {copy} already" in " ".join(on.out.split())
+    assert "GOOD, WITH RESERVATIONS." in on.out
+    verdict = load_model(second).verdict
+    assert any("counts twice" in each for each in verdict.reservations)
+    assert learned_from(open_log(copy), load_model(first)) == (str(copy),)
+
+
+def test_a_merge_of_models_of_one_log_says_so(slipwise: Slipwise, folder: Path, log: Path) -> None:
+    first, other, both = folder / "mem.yaml", folder / "other.yaml", folder / "both.yaml"
+    learn = ("calibrate", "--memory", *WHEEL, "--no-report")
+    assert slipwise(*learn, log, "-o", first).code == 0
+    twice = slipwise("surfaces", "merge", first, first, "-o", both)
+    assert twice.line == f"a model file is given twice ({first}): give each once"
+    assert slipwise("surfaces", "rename", first, "surface 1", "hall", "-o", other).code == 0
+    merged = slipwise("surfaces", "merge", first, other, "-o", both)
+    assert merged.code == 0
+    assert f"Both models have learned {log}, which counts twice" in " ".join(merged.out.split())
+    assert "which counts twice" in load_model(both).verdict.reservations[-1]
+    asked = slipwise("surfaces", "merge", first, other, "-o", both, "--json", "-").json
+    assert asked["logs_of_both"] == [str(log)]
