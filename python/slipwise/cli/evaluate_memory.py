@@ -79,6 +79,9 @@ def _write_page(path: Path, logs: list[Log], sequence: SequenceEvaluation) -> Pa
 
 
 def _show(out: Output, sequence: SequenceEvaluation) -> None:
+    from slipwise.cli.evaluation_verdict import LEARNED_FROM_THIS
+    from slipwise.cli.tables import NOT_CAUSAL, marked, show_memory_changes, show_surfaces
+
     going_on = bool(sequence.went_on)
     columns = (
         "windows",
@@ -89,7 +92,7 @@ def _show(out: Output, sequence: SequenceEvaluation) -> None:
     )
     rows = [
         (
-            visit.log,
+            marked(visit.log, causal=causal),
             visit.surface,
             f"{visit.windows}",
             _pair(visit.position, visit.heading),
@@ -98,17 +101,20 @@ def _show(out: Output, sequence: SequenceEvaluation) -> None:
             *((_pair(visit.going_on_first_position, visit.going_on_first_heading),) if going_on else ()),
             _pair(visit.baseline_position, visit.baseline_heading),
         )
-        for visit in sequence.visits()
+        for visit, causal in zip(sequence.visits(), sequence.causal, strict=True)
     ]
     out.table(
         "Mean errors of position and heading with a memory of surfaces",
         (Column("log"), Column("surface"), *(Column(name, True) for name in columns)),
         rows,
     )
+    if not all(sequence.causal):
+        out.line(NOT_CAUSAL)
+    for name, causal in zip(sequence.names, sequence.causal, strict=True):
+        if not causal:
+            out.line(f"{name}: {LEARNED_FROM_THIS}")
     if sequence.gain is not None:
         out.line(of_the_memory(*sequence.gain))
-    from slipwise.cli.tables import show_memory_changes, show_surfaces
-
     show_surfaces(out, sequence.learned.surfaces)
     show_memory_changes(out, sequence.names, sequence.learned)
 

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 #: What learns nothing, or nothing causally, and baselines that no model file can hold.
 _NOT_JUDGED = ("none", "vendor", "batch", "slip-ratio-ekf", "slip-ratio-smo", "neural", "neural-residual")
 
+LEARNED_FROM_THIS = "The model was learned from this very log: judge it on another drive."
+
 
 def judged_method(methods: tuple[str, ...], models: tuple[str, ...] = ()) -> str | None:
     """Return the method judged: the first model file, else `auto`, else the first that learns; or None."""
@@ -73,5 +75,5 @@ def _more_advice(evaluation: Evaluation, method: str) -> tuple[str, ...]:
     simpler = None if contradicted else simpler_method(evaluation, method)
     advice = () if simpler is None else (simpler.advice(),)
     if not evaluation.score(method, max(evaluation.horizons)).causal:
-        advice = (*advice, "The model was learned from this very log: judge it on another drive.")
+        advice = (*advice, LEARNED_FROM_THIS)
     return advice

@@ -160,6 +160,14 @@ def show_memory_changes(output: Output, names: Sequence[str], learned: LearnedSe
         output.line(f"Labels were right {right:.0f} times of {judged:.0f}.")
 
 
+NOT_CAUSAL = "† not causal: it has learned from the very segments it is judged on."
+
+
+def marked(name: str, *, causal: bool) -> str:
+    """Return a name, with the mark that `NOT_CAUSAL` explains."""
+    return name if causal else f"{name} †"
+
+
 def show_scores(output: Output, evaluation: Evaluation) -> None:
     """Show one table per horizon: errors, ratios, the in-sample residual and how honest the covariance is."""
     from slipwise.evaluation.result import embargo_sentence
@@ -170,7 +178,7 @@ def show_scores(output: Output, evaluation: Evaluation) -> None:
         output.table(title, _SCORE_COLUMNS, [_score_row(score) for score in scores])
     output.line(f"{_LEGEND} {embargo_sentence(evaluation.embargo)}")
     if any(not score.causal for score in evaluation.scores):
-        output.line("† not causal: it has learned from the very segments it is judged on.")
+        output.line(NOT_CAUSAL)
 
 
 _SCORE_COLUMNS = (
@@ -196,7 +204,7 @@ _LEGEND = (
 def _score_row(score: Score) -> tuple[str, ...]:
     degrees = math.degrees(1.0)
     return (
-        score.method + ("" if score.causal else " †"),
+        marked(score.method, causal=score.causal),
         _error(score.position, 1.0),
         number_text(score.position_ratio[0], 2),
         number_text(score.position_to_rival, 2),

@@ -11,8 +11,8 @@ import numpy as np
 
 from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions, go_on, learn_sequence
 from slipwise.calibration.predictions import Predictions
-from slipwise.calibration.prepared_run import choose_input, prepare_run
-from slipwise.calibration.same_log import refuse_same_log
+from slipwise.calibration.prepared_run import PreparedRun, choose_input, prepare_run
+from slipwise.calibration.same_log import learned_from, refuse_same_log
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.errors import LogError, SettingsError
@@ -63,6 +63,11 @@ class SequenceEvaluation:
         others = self.went_on or ((),) * len(self.names)
         visited = zip(self.names, self.evaluations, self.learned.logs, others, strict=True)
         return tuple(_visit(name, each, log.surface, went_on) for name, each, log, went_on in visited)
+
+    @property
+    def causal(self) -> tuple[bool, ...]:
+        """Of each log, whether its predictions are causal: the model to begin with has not learned it."""
+        return tuple(each.score(REMEMBERING, max(each.horizons)).causal for each in self.evaluations)
 
     @property
     def good(self) -> bool:
@@ -145,8 +150,10 @@ def evaluate_sequence(
             drives, chosen, horizons, embargo=options.embargo, progress=lambda done: said("going on", done)
         )
     evaluations = []
-    for (_, log), visited in zip(logs, learned.logs, strict=True):
+    for (_, log), drive, visited in zip(logs, drives, learned.logs, strict=True):
         made = {REMEMBERING: visited.predictions}
+        if memory.start is not None and learned_from(log, memory.start):
+            made = {REMEMBERING: tuple(_known_to_the_end(each, drive) for each in visited.predictions)}
         evaluations.append(
             evaluate(
                 log,
@@ -157,6 +164,12 @@ def evaluate_sequence(
             )
         )
     return SequenceEvaluation(tuple(evaluations), learned, tuple(name for name, _ in logs), went_on)
+
+
+def _known_to_the_end(predictions: Predictions, drive: Sequence[PreparedRun]) -> Predictions:
+    """Say of predictions that all of their log was learned before: they are not causal."""
+    ends = {run.index: run.end for run in drive}
+    return replace(predictions, learned_until=np.array([ends[run] for run in predictions.run.tolist()]))
 
 
 def _nobody(_name: str, _done: float) -> None:

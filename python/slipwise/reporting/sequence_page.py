@@ -159,7 +159,7 @@ def _visits(sequence: SequenceEvaluation) -> str:
     )
     rows = [
         (
-            visit.log,
+            visit.log if causal else f"{visit.log} (not causal: has seen these windows)",
             visit.surface or "open",
             str(visit.windows),
             *(
@@ -176,6 +176,6 @@ def _visits(sequence: SequenceEvaluation) -> str:
                 )
             ),
         )
-        for visit in sequence.visits()
+        for visit, causal in zip(sequence.visits(), sequence.causal, strict=True)
     ]
     return table(head, rows)
