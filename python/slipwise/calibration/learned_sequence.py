@@ -93,6 +93,7 @@ class SequenceOptions:
     terrain: Labels | None = None  # what sensors said of each run's surface, in place of both
     keep: Keep | None = None  # what a model file needs beside predictions
     embargo: float | None = None  # s that parameters of predictions are old at least; None: one horizon
+    start_file: str = ""  # of the model to begin with, for errors
 
 
 _NOTHING = SequenceOptions()
@@ -212,7 +213,8 @@ def _begun(
     runs = [run.run for drive in drives for run in drive]
     learner = new_learner(runs, input_name, settings, horizons, remember=True, embargo=options.embargo)
     if options.start is not None:
-        begin_with(learner, options.start, input_name, wheels=any(has_wheels(drive) for drive in drives))
+        wheels = any(has_wheels(drive) for drive in drives)
+        begin_with(learner, options.start, input_name, wheels=wheels, where=options.start_file)
     return learner
 
 

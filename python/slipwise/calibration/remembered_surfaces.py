@@ -26,18 +26,19 @@ class RememberedSurfaces:
     _input: str
     _start: Model | None  # that it began with
 
-    def begin_with(self, model: Model, *, wheels: bool = False) -> None:
+    def begin_with(self, model: Model, *, wheels: bool = False, where: str = "") -> None:
         """Begin with a robot and its surfaces as a model file has them, before anything is pushed.
 
         Args:
             model: of the same input, learned with a memory of surfaces.
             wheels: whether wheel speeds will come beside the commands.
+            where: the model's file, for errors.
 
         Raises:
             ModelError: the model has another input, or no memory of surfaces.
             SettingsError: something was pushed already, or the model was learned with other bases.
         """
-        begin_with(self._core, model, self._input, wheels=wheels)
+        begin_with(self._core, model, self._input, wheels=wheels, where=where)
         self._start = model
 
     def cue_surface(self, label: str = "") -> None:

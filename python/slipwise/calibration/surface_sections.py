@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.learner import BASELINE, CASCADED, DIRECT, JOINT, LIMITS
+from slipwise.calibration.learner import BASELINE, CASCADED, DIRECT, JOINT, LIMITS, STRUCTURES
 from slipwise.errors import ModelError, SettingsError
 from slipwise.models.model import Model
 from slipwise.models.schema import (
@@ -172,7 +172,9 @@ def known_before(model: Model) -> _core.KnownBefore:
     return _core.KnownBefore(model.posterior, structure_of(model), surfaces, (labels.all, labels.right))
 
 
-def begin_with(learner: _core.MotionLearner, model: Model, input_name: str, *, wheels: bool) -> None:
+def begin_with(
+    learner: _core.MotionLearner, model: Model, input_name: str, *, wheels: bool, where: str = ""
+) -> None:
     """Let a learner begin with the robot and the surfaces of a model file, before anything is pushed.
 
     Args:
@@ -180,10 +182,12 @@ def begin_with(learner: _core.MotionLearner, model: Model, input_name: str, *, w
         model: of the same input, learned with a memory of surfaces.
         input_name: of the learner, "command" or "wheel".
         wheels: whether wheel speeds will come beside commands.
+        where: the model's file, for errors.
 
     Raises:
         ModelError: the model has another input, or no memory of surfaces.
-        SettingsError: something was learned already, or the model was learned with other bases.
+        SettingsError: something was learned already, or the model was learned with other bases or
+            structures.
     """
     if model.content.input != input_name:
         raise ModelError(
@@ -207,7 +211,26 @@ def begin_with(learner: _core.MotionLearner, model: Model, input_name: str, *, w
     try:
         learner.begin_with(known, model.disturbance, wheels)
     except ValueError as problem:
-        raise SettingsError(str(problem)) from problem
+        untried = _untried(learner.settings.hypotheses, model, where)
+        raise untried or SettingsError(str(problem), where=where) from problem
+
+
+def _untried(ours: _core.HypothesisSettings, model: Model, where: str) -> SettingsError | None:
+    """Return what to say of surfaces of a structure that is not tried here; None where it is."""
+    structure = structure_of(model)
+    if model.content.response:
+        structure, tried = CASCADED, ours.cascaded
+    else:
+        tried = structure != DIRECT or ours.direct
+    if tried:
+        return None
+    basis = model.content.provenance.settings.get("basis", "auto")
+    return SettingsError(
+        f"the surfaces were learned by the structure {STRUCTURES[structure]!r}, which is not tried with the "
+        f"basis {', '.join(each.name for each in ours.bases)}",
+        where=where,
+        advice=f"leave --basis away, or give the settings that they were learned with (basis {basis!r})",
+    )
 
 
 def structure_of(model: Model) -> int:

@@ -44,6 +44,7 @@ def sequence_options(
     if not logs:
         raise SettingsError("no log given", where="--memory", advice="give logs in the order of time")
     start = load_model(models[0]) if models else None
+    file = str(models[0]) if models else ""
     files = label_files(labels)
     if files and len(files) < len(labels or ()):
         raise SettingsError(
@@ -52,8 +53,8 @@ def sequence_options(
             advice="give names or tables",
         )
     if files:
-        return SequenceOptions(start=start, terrain=read_labels(files))
-    return SequenceOptions(start=start, labels=given_labels(labels or (), len(logs)))
+        return SequenceOptions(start=start, terrain=read_labels(files), start_file=file)
+    return SequenceOptions(start=start, labels=given_labels(labels or (), len(logs)), start_file=file)
 
 
 def label_files(labels: Sequence[str] | None) -> list[Path]:

@@ -129,7 +129,7 @@ def _new_learner(input_name: str, settings: Settings, before: Model | None, *, w
         wheelbase=wheelbase_of(settings),
     )
     if before is not None:
-        learner.begin_with(before, wheels=wheels)
+        learner.begin_with(before, wheels=wheels, where=live.model or "")
     return learner
 
 
