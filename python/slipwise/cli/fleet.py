@@ -66,6 +66,7 @@ def fleet(
     out = Output(json)
     files = {"page": output / "fleet.html", "prior": output / "fleet.yaml"}
     refuse_unwritable(*files.values(), out.written_file, inputs=[settings])
+    learns = _scheduler(scheduler, workers)
     found = find_logs(logs, vehicle=name)
     store = Store(output)
     _check_settings(settings)
@@ -76,7 +77,7 @@ def fleet(
         count = learn_fleet(
             found,
             store,
-            _scheduler(scheduler, workers),
+            learns,
             settings=settings,
             progress=lambda now: update(_left_text(now.seconds_left), now.done / now.of),
         )

@@ -108,6 +108,8 @@ def live(
     chosen = with_memory(chosen)
     table = chosen.live
     start = None if table.model is None else Path(table.model)
+    instead = "--demo" if demo else "--replay" if replay is not None else None
+    _refuse_unheeded(table.transport, transport, results, instead=instead)
     to_file = None if results is None or str(results) == "-" else results
     refuse_unwritable(
         output,
@@ -116,32 +118,56 @@ def live(
     )
     shown = Shown(quiet or (results is not None and str(results) == "-"), web)
     stopping = Stopping()
-    with taken_by(stopping):
-        source = Source(replay, demo, rate, results)
-        robot = open_robot(chosen, log_options, source, say=shown.say)
-        chosen = settled(chosen, log_options, robot.coming)
-        watchers = watchers_for(shown, chosen.live)
-        timeout = None if robot.log is not None else log_options.command_timeout  # a log has it already
-        built = build_node(
-            robot.transport,
-            robot.input_name,
-            chosen,
-            watchers=watchers,
-            run=robot.run,
-            command_timeout=timeout,
-        )
-        if robot.log is not None:
-            built.learning.learner.know_log(robot.log)
-        stopping.node = built.node
-        if table.duration is not None:
-            timer = threading.Timer(table.duration, built.node.stop)
-            timer.daemon = True
-            timer.start()
-        built.node.run()
+    try:
+        with taken_by(stopping):
+            source = Source(replay, demo, rate, results)
+            robot = open_robot(chosen, log_options, source, say=shown.say)
+            chosen = settled(chosen, log_options, robot.coming)
+            watchers = watchers_for(shown, chosen.live)
+            timeout = None if robot.log is not None else log_options.command_timeout  # a log has it already
+            built = build_node(
+                robot.transport,
+                robot.input_name,
+                chosen,
+                watchers=watchers,
+                run=robot.run,
+                command_timeout=timeout,
+            )
+            if robot.log is not None:
+                built.learning.learner.know_log(robot.log)
+            stopping.node = built.node
+            if table.duration is not None:
+                timer = threading.Timer(table.duration, built.node.stop)
+                timer.daemon = True
+                timer.start()
+            built.node.run()
+    except Stopped:
+        shown.say("stopped before anything came")
+        return 0
     if output is not None:
         model_of_replay(built, robot.log).save(output)
         shown.say(f"model: {output}")
     return 0
+
+
+def _refuse_unheeded(
+    settled: str | None, given: str | None, results: Path | None, *, instead: str | None
+) -> None:
+    """Refuse options that would change nothing.
+
+    Raises:
+        SettingsError: `instead` of a transport samples come from elsewhere; or there are no lines to answer.
+    """
+    from slipwise.errors import SettingsError
+
+    if instead and given is not None:
+        raise SettingsError(
+            f"{instead} stands in for a robot", where="--transport", advice="leave one of the two out"
+        )
+    if results is not None and (instead or settled != "stdin"):
+        raise SettingsError(
+            "results answer lines", where="--results", advice="give --transport stdin with it"
+        )
 
 
 class Shown:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from slipwise.errors import SettingsError
+from slipwise.errors import LogError, SettingsError
 
 if TYPE_CHECKING:
     from slipwise.calibration import Settings
@@ -155,10 +155,11 @@ def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) 
 
 def _of_lines(table: LiveTable, options: LogOptions, source: Source, say: Callable[[str], None]) -> Robot:
     from slipwise.live.pipe import Pipe
+    from slipwise.live.stoppable_reader import StoppableReader
     from slipwise.live.udp import DEFAULT_ADDRESS, Udp
 
     if table.transport == "stdin":
-        lines: Pipe | Udp = Pipe(sys.stdin.buffer, _results(source.results), options)
+        lines: Pipe | Udp = Pipe(StoppableReader(sys.stdin.fileno()), _results(source.results), options)
         name = "standard input"
     else:
         lines = Udp(table.address or DEFAULT_ADDRESS, options)
@@ -233,6 +234,8 @@ def model_of_replay(built: Built, log: Log | None) -> Model:
     """Return the model of all that was learned; of a log that was replayed, what `calibrate` makes of it.
 
     Raises:
-        SlipwiseError: nothing was learned.
+        LogError: nothing was learned.
     """
+    if not built.learning.learner.learned:
+        raise LogError("nothing was learned: no model is written", advice="drive for some seconds first")
     return built.learning.learner.judged_model(log=log)[0]

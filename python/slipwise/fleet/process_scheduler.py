@@ -10,6 +10,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 
+from slipwise.errors import SettingsError
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.learned_rows import LogRows, learn_task
 from slipwise.fleet.scheduler import ATTEMPTS, DIED, Outcome
@@ -28,7 +29,11 @@ class ProcessScheduler:
     """
 
     def __init__(self, workers: int | None = None, *, work: Work = learn_task) -> None:
-        self._workers = max(1, workers if workers is not None else os.cpu_count() or 1)
+        if workers is not None and workers < 1:
+            raise SettingsError(
+                f"{workers} processes learn nothing", where="workers", advice="give 1 or more"
+            )
+        self._workers = workers or os.cpu_count() or 1
         self._work = work
 
     def run(self, tasks: Iterable[LogTask]) -> Generator[Outcome, None, None]:

@@ -14,9 +14,11 @@ from slipwise.live.lines import MOST_BYTES, LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.result_lines import ResultLines, Writable
 from slipwise.live.samples import Sample, Unusable
+from slipwise.live.stoppable_reader import StoppableReader
 from slipwise.live.transport import OnSample
 from slipwise.logs.options import LogOptions
 
+ENDS_WITHIN = 1.0  # s, of a thread that may still hand over a sample
 _AS_IT_IS = LogOptions()
 
 
@@ -35,12 +37,14 @@ class Pipe:
     def __init__(
         self, lines: IO[bytes], results: Writable | None = None, options: LogOptions = _AS_IT_IS
     ) -> None:
-        self._lines, self._results = bounded_lines(lines), None if results is None else ResultLines(results)
+        self._stream, self._lines = lines, bounded_lines(lines)
+        self._results = None if results is None else ResultLines(results)
         self._reader = LineReader(options)
         self._samples = self._read_all()
         self._looked_at: list[Sample] = []
         self._done, self._stopped = threading.Event(), threading.Event()
         self._failure: Exception | None = None
+        self._thread: threading.Thread | None = None
 
     def look(self) -> ComingLines:
         """Wait for the first samples, and return what will come; `subscribe` delivers them all the same."""
@@ -54,7 +58,8 @@ class Pipe:
 
     def subscribe(self, on_sample: OnSample) -> None:
         """Begin to read."""
-        threading.Thread(target=self._read, args=(on_sample,), name="lines", daemon=True).start()
+        self._thread = threading.Thread(target=self._read, args=(on_sample,), name="lines", daemon=True)
+        self._thread.start()
 
     def publish(self, output: Output) -> None:
         """Write a result as a line; a reader that went away is no error."""
@@ -88,8 +93,12 @@ class Pipe:
         return False
 
     def close(self) -> None:
-        """Take no more lines; the thread ends with the stream, or with the process."""
+        """Take no more lines; the thread ends with the stream, where that can be stopped now."""
         self._stopped.set()
+        if isinstance(self._stream, StoppableReader):
+            self._stream.stop()
+            if self._thread is not None and threading.current_thread() is not self._thread:
+                self._thread.join(ENDS_WITHIN)
         if self._results is not None:
             self._results.close()
 

@@ -104,7 +104,12 @@ def test_ctrl_c_while_workers_of_a_fleet_begin_is_said_in_one_line(folder: Path)
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
-    [(("nowhere",), "no such file"), ((".",), "no log"), ((".", "--settings", "no.toml"), "no")],
+    [
+        (("nowhere",), "no such file"),
+        ((".",), "no log"),
+        ((".", "--settings", "no.toml"), "no"),
+        ((".", "--workers", "0"), "give 1 or more"),
+    ],
 )
 def test_wrong_use_ends_with_code_2_and_says_why(
     slipwise: Slipwise, folder: Path, arguments: tuple[str, ...], message: str

@@ -101,6 +101,30 @@ def test_a_signal_ends_it_with_the_cache_written(drive: Path, tmp_path: Path, nu
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("lines", [0, 400])
+def test_a_signal_ends_it_while_a_writer_lives_whether_lines_came_or_not(
+    drive: Path, tmp_path: Path, number: signal.Signals, lines: int
+) -> None:
+    cache = tmp_path / "cache"
+    command = [*SLIPWISE, "live", "--transport", "stdin", "--cache", str(cache)]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.writelines(drive.read_text().splitlines(keepends=True)[:lines])
+        process.stdin.flush()
+        awaited = "learning from" if lines else "waiting for the first lines"
+        while awaited not in process.stdout.readline():
+            assert process.poll() is None
+        time.sleep(0.5)
+        process.send_signal(number)
+        process.wait(30.0)
+        assert (process.returncode, process.stderr.read() if process.stderr else "") == (0, "")
+
+
+@pytest.mark.slow
 def test_lines_on_a_pipe_are_answered_with_lines(drive: Path) -> None:
     (only,) = sw.open_log(drive).runs
     wheels = only.wheels
@@ -145,6 +169,9 @@ def test_what_cannot_be_is_one_line(capsys: pytest.CaptureFixture[str], subtests
         (["--set", "live.node=two words"], "node"),
         (["--set", "live.network=maybe"], "network"),
         (["--replay", "nowhere.csv"], "no such file"),
+        (["--replay", "nowhere.csv", "--transport", "udp"], "leave one of the two out"),
+        (["--replay", "nowhere.csv", "--results", "said.jsonl"], "--transport stdin"),
+        (["--transport", "udp", "--results", "-"], "--transport stdin"),
         (["--transport", "udp", "--set", "live.address=nowhere"], "cannot listen"),
     ]:
         with subtests.test(options=options, said=said):
