@@ -10,7 +10,7 @@ from pathlib import Path
 
 from slipwise.calibration import Settings
 from slipwise.calibration.coming import Coming
-from slipwise.calibration.core_settings import wheelbase_of
+from slipwise.calibration.core_settings import car_of, wheelbase_of
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.sloping_ground import for_ground
 from slipwise.errors import SettingsError
@@ -74,7 +74,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     before = surfaces_before(table)
     if before is None:  # a memory that is continued keeps its terms
         settings = for_ground(settings, slopes=table.attitude, sideways=table.sideways)
-    start = _start_model(table.model, input_name)
+    start = _start_model(table.model, input_name, drives_car=car_of(settings) is not None)
     cache, learner, valid = None, None, None
     if table.cache is not None:
         cache = Cache(Path(table.cache), CacheKey.of(table.name, input_name, settings))
@@ -133,12 +133,20 @@ def _new_learner(input_name: str, settings: Settings, before: Model | None, *, w
     return learner
 
 
-def _start_model(path: str | None, input_name: str) -> Model | None:
+def _start_model(path: str | None, input_name: str, *, drives_car: bool) -> Model | None:
     if path is None:
         return None
     model = model_in(path)
     if input_name in model.inputs:
-        return model.of_input(input_name)
+        model = model.of_input(input_name)
+        if input_name == "command" and (model.car is not None) != drives_car:
+            taken, sent = ("speeds and yaw rates", "throttle and steering")[:: 1 if drives_car else -1]
+            raise SettingsError(
+                f"the start model takes {taken}, this robot is sent {sent}",
+                where=path,
+                advice="give a model of this robot, and --vehicle where it is a car with a throttle",
+            )
+        return model
     if model.content.input != input_name:
         raise SettingsError(
             f"the start model was learned from {model.content.input}s, this node learns from {input_name}s",

@@ -10,19 +10,23 @@ from pathlib import Path
 from typing import Literal
 
 import pytest
+from sample_cars import write_car_log
 from sample_models import make_model, named
 from sample_slopes import Hills, hilly_log
 from scripted_node import SLIP, Scripted, driven, run_node
 
+import slipwise as sw
 from slipwise.calibration import Settings, make_settings
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.prepared_run import prepare_run
+from slipwise.errors import SettingsError
 from slipwise.live.build import build_node
 from slipwise.live.outputs import ModelText, Output, Validity
 from slipwise.live.replay import samples_of
 from slipwise.live.samples import Answer, Pose, Request
 from slipwise.live.validity import judged
+from slipwise.logs import LogOptions
 from slipwise.models import Model
 
 
@@ -147,3 +151,16 @@ def test_requests_are_answered_in_turn(tmp_path: Path) -> None:
     assert path.t[-1] - path.t[0] == pytest.approx(2.0)
     counted = built.said.counts["poses not learned from: it was asked to rest"]
     assert counted == sum(isinstance(sample, Pose) for sample in rest)
+
+
+@pytest.mark.slow
+def test_a_start_model_of_throttle_and_steering_is_refused_by_a_robot_of_speeds(tmp_path: Path) -> None:
+    log = sw.open_log(write_car_log(tmp_path / "car.csv", 60.0), options=LogOptions(vehicle="dart"))
+    sw.calibrate(log).model.save(tmp_path / "car.yaml")
+    start = LiveTable(model=str(tmp_path / "car.yaml"))
+    with pytest.raises(SettingsError, match="takes throttle and steering, this robot is sent speeds"):
+        run_node(driven(), start, "command")
+    make_model(replace(named("edd-2"), commands=True)).save(tmp_path / "rover.yaml")
+    car = LiveTable(model=str(tmp_path / "rover.yaml"), vehicle="dart")
+    with pytest.raises(SettingsError, match="takes speeds and yaw rates, this robot is sent throttle"):
+        run_node(driven(), car, "command", "auto")
