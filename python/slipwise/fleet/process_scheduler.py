@@ -26,6 +26,9 @@ class ProcessScheduler:
     Args:
         workers: how many; by default one per processor.
         work: what is done with a task; a function of a module.
+
+    Raises:
+        SettingsError: fewer than one worker.
     """
 
     def __init__(self, workers: int | None = None, *, work: Work = learn_task) -> None:
