@@ -279,6 +279,12 @@ def drifting(p: Poses) -> Poses:
     return replace(p, x=p.x + 0.7 * x, y=p.y + 0.7 * y)
 
 
+def leaning(p: Poses) -> Poses:
+    """Give flat ground the attitude of a sensor that leans by 10 degrees on its robot."""
+    noise = np.random.default_rng(7).normal(0.0, 0.01, (2, len(p)))
+    return replace(p, roll=noise[0], pitch=noise[1] - 0.17)
+
+
 @dataclass(frozen=True)
 class Fault:
     """What is done to a log, which inputs the log needs for it, and the kinds of finding that name it."""
@@ -343,6 +349,7 @@ FAULTS: dict[str, Fault] = {
     "answers 1.5 s late": Fault(answering_late, ("late-answers",), ("commands", "wheels")),
     "ticks jump": Fault(wheels(jumping_ticks), ("reversal-jumps",), ("wheels",), unseen=("DS3",)),
     "multipath": Fault(poses(drifting), ("drifting-poses",), ("wheels",), unseen=NEVER_STANDS),
+    "sensor leans back": of_poses(leaning, "askew-attitude"),
     "operator's override": Fault(overridden, ("overridden",), ("commands", "wheels")),
     "twist in the parent's frame": Fault(rotated_into_parent, ("parent-twist",), ("wheels",)),
     "two publishers": Fault(two_publishers, ("two-sources",), ("wheels",)),

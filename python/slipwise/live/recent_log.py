@@ -38,13 +38,14 @@ class RecentLog:
     def take(self, sample: Stamped) -> None:
         """Take a sample; one that is not later than those of its kind says nothing."""
         if isinstance(sample, Pose):
-            row: _Row = (sample.t, sample.x, sample.y, sample.yaw)
+            tilt = (math.nan if angle is None else angle for angle in (sample.roll, sample.pitch))
+            row: _Row = (sample.t, sample.x, sample.y, sample.yaw, *tilt)
         elif isinstance(sample, Command | Wheels):
             row = (sample.t, sample.v, sample.vy, sample.omega)
         else:
             return
         rows = self._rows[type(sample)]
-        if not all(map(math.isfinite, row)) or (rows and row[0] <= rows[-1][0]):
+        if not all(map(math.isfinite, row[:4])) or (rows and row[0] <= rows[-1][0]):
             return
         rows.append(row)
         self._newest = max(self._newest, row[0])
@@ -73,8 +74,10 @@ class RecentLog:
         rows = self._rows[Pose]
         poses = empty_poses()
         if rows:
-            t, x, y, yaw = np.ascontiguousarray(np.array(rows).T)
-            poses = Poses(t, x, y, yaw, np.zeros(len(t), np.int64))
+            t, x, y, yaw, roll, pitch = np.ascontiguousarray(np.array(rows).T)
+            tilted = bool(np.isfinite(pitch).any())
+            tilts = {"roll": roll, "pitch": pitch} if tilted else {}
+            poses = Poses(t, x, y, yaw, np.zeros(len(t), np.int64), **tilts)
         return Log(runs=(Run("live", commands, wheels, poses),))
 
     def _inputs(self, kind: type) -> Inputs | None:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from slipwise import _core
+from slipwise.logs.findings.askew_attitude import AskewAttitude
 from slipwise.logs.findings.clocks import CLOCKS
 from slipwise.logs.findings.command_answers import DeadBand, EchoedCommands, Overridden
 from slipwise.logs.findings.command_stops import CommandTimeout
@@ -74,6 +75,7 @@ WHOLE: tuple[Check, ...] = (
     Overridden(),
     FrozenPoses(),
     DriftingPoses(),
+    AskewAttitude(),
     ClockOffset(),
     ClockDrift(),
     TwoSources(),
@@ -88,6 +90,7 @@ OF_STREAM: tuple[Check, ...] = (
     Overridden(),
     FrozenPoses(),
     DriftingPoses(),
+    AskewAttitude(),
     ClockOffset(),
 )
 #: Each once, also what readers and live nodes find.
