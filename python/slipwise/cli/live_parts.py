@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import IO, TYPE_CHECKING, Any, Protocol
 
 from slipwise.errors import LogError, SettingsError
 
@@ -155,11 +155,10 @@ def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) 
 
 def _of_lines(table: LiveTable, options: LogOptions, source: Source, say: Callable[[str], None]) -> Robot:
     from slipwise.live.pipe import Pipe
-    from slipwise.live.stoppable_reader import StoppableReader
     from slipwise.live.udp import DEFAULT_ADDRESS, Udp
 
     if table.transport == "stdin":
-        lines: Pipe | Udp = Pipe(StoppableReader(sys.stdin.fileno()), _results(source.results), options)
+        lines: Pipe | Udp = Pipe(_standard_input(), _results(source.results), options)
         name = "standard input"
     else:
         lines = Udp(table.address or DEFAULT_ADDRESS, options)
@@ -183,6 +182,16 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
     wire = make_wire(None if table.transport in (None, "ros") else table.transport, named)
     found = find_robot(wire, table, options, say, name=table.node)
     return Robot(found.transport, found.input_name, "live", coming=found.coming)
+
+
+def _standard_input() -> IO[bytes]:
+    """Return what can be stopped, unless a program has put a stream of its own there."""
+    from slipwise.live.stoppable_reader import StoppableReader
+
+    try:
+        return StoppableReader(sys.stdin.buffer.fileno())
+    except OSError:
+        return sys.stdin.buffer
 
 
 def _results(path: Path | None) -> Any:
