@@ -279,10 +279,14 @@ def drifting(p: Poses) -> Poses:
     return replace(p, x=p.x + 0.7 * x, y=p.y + 0.7 * y)
 
 
-def leaning(p: Poses) -> Poses:
-    """Give flat ground the attitude of a sensor that leans by 10 degrees on its robot."""
-    noise = np.random.default_rng(7).normal(0.0, 0.01, (2, len(p)))
-    return replace(p, roll=noise[0], pitch=noise[1] - 0.17)
+def leaning(roll: float, pitch: float) -> Callable[[Poses], Poses]:
+    """Give flat ground the attitude of a sensor that leans so far on its robot [rad]."""
+
+    def leant(p: Poses) -> Poses:
+        noise = np.random.default_rng(7).normal(0.0, 0.01, (2, len(p)))
+        return replace(p, roll=noise[0] + roll, pitch=noise[1] + pitch)
+
+    return leant
 
 
 @dataclass(frozen=True)
@@ -305,13 +309,14 @@ def of_commands(change: Callable[[Inputs], Inputs], *kinds: str) -> Fault:
     return Fault(commands(change), kinds, ("commands",))
 
 
-def of_poses(change: Callable[[Poses], Poses], *kinds: str) -> Fault:
+def of_poses(change: Callable[[Poses], Poses], *kinds: str, unseen: tuple[str, ...] = ()) -> Fault:
     """A fault of the poses."""
-    return Fault(poses(change), kinds)
+    return Fault(poses(change), kinds, unseen=unseen)
 
 
 FORWARD = ("DS3", "MRCLAM6_R1")
 UNEVEN = ("DS3", "asphalt_9_25_12h8s57", "grass_8_8_15h56s39")  # commands are not done as they are
+ONE_SIDED = ("asphalt_9_25_12h8s57", "grass_8_8_15h56s39")  # hardly turn to the other side
 NEVER_STANDS = ("simulated", "DS3", "tile_deflated_tyres")
 NOT_THESE = ("unrelated", "does-not-move", "lost-heading", "implausible")
 FAULTS: dict[str, Fault] = {
@@ -349,7 +354,8 @@ FAULTS: dict[str, Fault] = {
     "answers 1.5 s late": Fault(answering_late, ("late-answers",), ("commands", "wheels")),
     "ticks jump": Fault(wheels(jumping_ticks), ("reversal-jumps",), ("wheels",), unseen=("DS3",)),
     "multipath": Fault(poses(drifting), ("drifting-poses",), ("wheels",), unseen=NEVER_STANDS),
-    "sensor leans back": of_poses(leaning, "askew-attitude"),
+    "sensor leans back": of_poses(leaning(0.0, -0.17), "askew-attitude"),
+    "sensor leans to a side": of_poses(leaning(0.17, 0.0), "askew-attitude", unseen=ONE_SIDED),
     "operator's override": Fault(overridden, ("overridden",), ("commands", "wheels")),
     "twist in the parent's frame": Fault(rotated_into_parent, ("parent-twist",), ("wheels",)),
     "two publishers": Fault(two_publishers, ("two-sources",), ("wheels",)),
