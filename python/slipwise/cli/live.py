@@ -108,14 +108,14 @@ def live(
     chosen = with_memory(chosen)
     table = chosen.live
     start = None if table.model is None else Path(table.model)
-    instead = "--demo" if demo else "--replay" if replay is not None else None
-    _refuse_unheeded(table.transport, transport, results, instead=instead)
     to_file = None if results is None or str(results) == "-" else results
     refuse_unwritable(
         output,
         to_file,
         inputs=(replay, settings, start, *log_options.files),
     )
+    instead = "--demo" if demo else "--replay" if replay is not None else None
+    _refuse_unheeded(table.transport, transport, results, instead=instead)
     shown = Shown(quiet or (results is not None and str(results) == "-"), web)
     stopping = Stopping()
     try:
