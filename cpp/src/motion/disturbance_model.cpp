@@ -13,6 +13,7 @@ namespace slipwise {
 namespace {
 
 constexpr std::array<std::string_view, kMostDisturbed> kDisturbed{"lon.V", "lat.V", "ang.w", "ang.V"};
+constexpr double kSure = 0.75;      // of the weight; from there on slip lasts longer than usual
 constexpr double kFewSpans = 1e-3;  // below it two terms of the series are exact to 1e-10
 
 bool is_amount(double value) { return value >= 0.0 && std::isfinite(value); }
@@ -48,13 +49,18 @@ DisturbedTerms disturbed_terms(const MotionModel& model, const Eigen::Ref<const 
 }
 
 double correlation_time(const DisturbanceModel& law, double usual) {
-  double mean = law.candidates.empty() ? usual : 0.0;
+  double longer = 0.0;
+  double excess = 0.0;
   for (std::size_t i = 0; i < law.candidates.size(); ++i) {
     const SlipDisturbance& candidate = law.candidates[i];
     const bool differs = candidate.linear > 0.0 || candidate.angular > 0.0;
-    mean += law.weights[static_cast<Eigen::Index>(i)] * (differs ? candidate.time_constant : usual);
+    if (differs && candidate.time_constant > usual) {
+      const double weight = law.weights[static_cast<Eigen::Index>(i)];
+      longer += weight;
+      excess += weight * (candidate.time_constant - usual);
+    }
   }
-  return mean;
+  return longer > kSure ? usual + (longer - kSure) / (1.0 - kSure) * excess / longer : usual;
 }
 
 double kept_over(double spans) { return spans > 0.0 ? -std::expm1(-spans) / spans : 1.0; }

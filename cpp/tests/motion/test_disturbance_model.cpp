@@ -55,9 +55,16 @@ TEST_CASE("the mean of a process over some time has the variance of simulated on
   CHECK(variance_over(0.999e-3) == doctest::Approx(variance_over(1.001e-3)).epsilon(1e-6));
 }
 
-TEST_CASE("slip differs for as long as likely candidates say, and for as long as usual where none is likely") {
-  const DisturbanceModel law{{{0.0, 0.0, 1.0}, {0.1, 0.0, 5.0}, {0.0, 0.2, 20.0}}, Eigen::Vector3d(0.5, 0.2, 0.3)};
-  CHECK(correlation_time(law, 8.0) == doctest::Approx(0.5 * 8.0 + 0.2 * 5.0 + 0.3 * 20.0));
+TEST_CASE("slip differs for as long as usual, until longer is likelier") {
+  const auto time = [](double none, double shorter, double longer) {
+    const DisturbanceModel law{{{0.0, 0.0, 30.0}, {0.1, 0.0, 5.0}, {0.0, 0.2, 20.0}},
+                               Eigen::Vector3d(none, shorter, longer)};
+    return correlation_time(law, 8.0);
+  };
+  CHECK(time(0.6, 0.4, 0.0) == 8.0);
+  CHECK(time(0.1, 0.15, 0.75) == 8.0);
+  CHECK(time(0.1, 0.025, 0.875) == doctest::Approx(14.0));
+  CHECK(time(0.0, 0.0, 1.0) == doctest::Approx(20.0));
   CHECK(correlation_time({}, 8.0) == 8.0);
 }
 

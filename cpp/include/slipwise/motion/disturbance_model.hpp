@@ -41,8 +41,8 @@ inline constexpr Eigen::Index kMostDisturbed = 4;
 /// \throws std::invalid_argument when there is not one prior standard deviation per parameter.
 DisturbedTerms disturbed_terms(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& prior_std);
 
-/// For how long slip differs from what was learned, on average over the candidates [s]; one that says that it does not
-/// counts as `usual`.
+/// For how long slip differs from what was learned [s]: as `usual` until candidates for longer have three quarters of
+/// the weight, as long as these say where they have all of it.
 double correlation_time(const DisturbanceModel& law, double usual);
 
 /// Mean, over a time of `spans` time constants, of what such a process keeps of its value at the start.
