@@ -48,7 +48,7 @@ def _measured(run: Run) -> bytes:
 
 def learned_from(log: Log, model: Model) -> tuple[str, ...]:
     """Return the files of a log that a model has learned from; predictions of these are not causal."""
-    hashes = {reference.sha256 for reference in model.content.provenance.logs}
+    hashes = _learned(model)
     return tuple(dict.fromkeys(source.path for source in log.sources if source.sha256 in hashes))
 
 
@@ -64,8 +64,12 @@ def learned_before(log: Log, start: Model | None) -> tuple[Finding, ...]:
 
 def logs_of_both(first: Model, second: Model) -> tuple[str, ...]:
     """Return the logs of the first model, by their paths, that the second has learned too."""
-    hashes = {reference.sha256 for reference in second.content.provenance.logs}
+    hashes = _learned(second)
     return tuple(each.path for each in first.content.provenance.logs if each.sha256 in hashes)
+
+
+def _learned(model: Model) -> set[str]:
+    return {reference.sha256 for reference in model.content.provenance.logs}
 
 
 def twice_in_both(logs: tuple[str, ...]) -> str:

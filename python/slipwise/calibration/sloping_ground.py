@@ -68,6 +68,12 @@ def drives_sideways(log: Log) -> bool:
     )
 
 
+def takes_ground_for_level(settings: Settings) -> bool:
+    """Whether the default list of `auto` is tried without its terms of gravity."""
+    bases = set(settings.auto.bases) if settings.basis == "auto" else set()
+    return set(AUTO_BASES) <= bases and not bases & set(SLOPE_BASES)
+
+
 def for_ground(settings: Settings, *, slopes: bool, sideways: bool) -> Settings:
     """Return the settings with terms of gravity and of sideways speed in the default list of `auto`.
 

@@ -7,9 +7,8 @@ import math
 from dataclasses import replace
 
 from slipwise.calibration.learner_answers import Event
-from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.calibration.motion_learner import MotionLearner
-from slipwise.calibration.sloping_ground import SLOPE_BASES
+from slipwise.calibration.sloping_ground import takes_ground_for_level
 from slipwise.live.clock_watch import Clock, ClockWatch
 from slipwise.live.command_ends import CommandEnds
 from slipwise.live.command_stops import SAID_EVERY, LiveCommandStops
@@ -61,8 +60,7 @@ class Intake:
         self._recent = RecentLog(input_name, learner.settings.segment.unknown_after)
         self._clock = ClockWatch()
         self.surfaces = SurfaceWatch(learner, said)
-        auto = learner.settings.auto.bases if learner.settings.basis == "auto" else ()
-        self._level = set(AUTO_BASES) <= set(auto) and not set(SLOPE_BASES) & set(auto)
+        self._level = takes_ground_for_level(learner.settings)
         self.turning = Turning()
         self._looked_at = math.inf  # s, when it was looked how commands end
         self._frames: dict[str, int] = {}

@@ -75,9 +75,7 @@ class RecentLog:
         poses = empty_poses()
         if rows:
             t, x, y, yaw, roll, pitch = np.ascontiguousarray(np.array(rows).T)
-            tilted = bool(np.isfinite(pitch).any())
-            tilts = {"roll": roll, "pitch": pitch} if tilted else {}
-            poses = Poses(t, x, y, yaw, np.zeros(len(t), np.int64), **tilts)
+            poses = Poses(t, x, y, yaw, np.zeros(len(t), np.int64), roll=roll, pitch=pitch)
         return Log(runs=(Run("live", commands, wheels, poses),))
 
     def _inputs(self, kind: type) -> Inputs | None:

@@ -18,6 +18,7 @@ from slipwise.reporting.markup import missing, number, paragraph, table
 from slipwise.reporting.named_surfaces import named_surfaces
 from slipwise.reporting.page import Part, page_of
 from slipwise.reporting.sections.ground import bank_table
+from slipwise.reporting.sections.scores import HAS_SEEN
 from slipwise.reporting.timeline import Timeline
 
 Floats = NDArray[np.float64]
@@ -159,7 +160,7 @@ def _visits(sequence: SequenceEvaluation) -> str:
     )
     rows = [
         (
-            visit.log if causal else f"{visit.log} (not causal: has seen these windows)",
+            visit.log if causal else f"{visit.log} ({HAS_SEEN})",
             visit.surface or "open",
             str(visit.windows),
             *(

@@ -27,6 +27,8 @@ _ALL_COLUMNS = (
     ("in-sample:", "too optimistic"),
 )
 
+HAS_SEEN = "not causal: has seen these windows"
+
 
 class ScoresSection:
     """How well does each method predict?"""
@@ -124,7 +126,7 @@ def _row(contents: Contents, method: str, cells: Sequence[str]) -> str:
     colour = stroke_of(method, contents.evaluation.methods).colour
     ours = ' class="ours"' if method == contents.learned_method else ""
     causal = all(score.causal for score in contents.evaluation.scores if score.method == method)
-    words = [explanation(method, contents), "" if causal else "not causal: has seen these windows"]
+    words = [explanation(method, contents), "" if causal else HAS_SEEN]
     small = "".join(_small(text) for text in words if text)
     return (
         f'<tr{ours}><th scope="row"><span class="swatch" style="{css_swatch(colour)}"></span>'
