@@ -10,7 +10,7 @@ windows is left out in turn, and the difference that the oldest window makes.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -23,6 +23,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 _TAPS = (-2, -1, 0, 1, 2)  # windows whose inputs act in a window: means are of either side, and stamps late
+_NOW = _TAPS.index(0)
 _FEWEST = 20  # windows that say something
 _BLOCKS = 10  # that are left out in turn
 _KNOWN_PART = 0.9  # of a window's time, an input must be known
@@ -41,20 +42,20 @@ class _Fit:
 
     inputs: Floats  # [M, taps] in the window and its neighbours
     outputs: Floats  # [M]
+    parts: Ints  # [M] the tenth of the time
 
     def __len__(self) -> int:
         return len(self.outputs)
 
-    def without(self, block: Ints) -> _Fit:
-        kept = np.delete(np.arange(len(self)), block)
-        return _Fit(self.inputs[kept], self.outputs[kept])
+    def only(self, kept: NDArray[np.bool_]) -> _Fit:
+        return _Fit(self.inputs[kept], self.outputs[kept], self.parts[kept])
 
     def coefficients(self) -> Floats:
         return np.asarray(np.linalg.lstsq(self.inputs, self.outputs, rcond=None)[0], dtype=np.float64)
 
     def scatter(self, number: Callable[[_Fit], float]) -> float:
         """Return the standard deviation of a number, by leaving a tenth of the windows out in turn."""
-        left = [number(self.without(block)) for block in np.array_split(np.arange(len(self)), _BLOCKS)]
+        left = [number(self.only(self.parts != part)) for part in range(_BLOCKS)]
         return float(np.sqrt((_BLOCKS - 1) * np.var(left)))
 
 
@@ -132,9 +133,9 @@ def _places(rows: Floats, first: int) -> Ints:
 
 
 def _fit(inputs: Floats, outputs: Floats, places: Ints) -> _Fit:
-    fit = _Fit(np.column_stack([inputs[places + tap] for tap in _TAPS]), outputs[places])
-    sane = (np.abs(fit.inputs) < _HUGE).all(axis=1) & (np.abs(fit.outputs) < _HUGE)
-    return fit if sane.all() else _Fit(fit.inputs[sane], fit.outputs[sane])
+    acting, acted = np.column_stack([inputs[places + tap] for tap in _TAPS]), outputs[places]
+    sane = (np.abs(acting) < _HUGE).all(axis=1) & (np.abs(acted) < _HUGE)
+    return _Fit(acting[sane], acted[sane], np.arange(sane.sum()) * _BLOCKS // max(int(sane.sum()), 1))
 
 
 def _share(fit: _Fit) -> Share | None:
@@ -143,7 +144,7 @@ def _share(fit: _Fit) -> Share | None:
     value = _gain(fit)
     if not abs(value) < _LARGEST:
         return None
-    fewer = value - _gain(_Fit(fit.inputs[:, 1:], fit.outputs))  # what the oldest commands make of it
+    fewer = value - _gain(replace(fit, inputs=fit.inputs[:, 1:]))  # what the oldest commands make of it
     return Share(value=value, std=float(np.hypot(fit.scatter(_gain), fewer)))
 
 
@@ -153,15 +154,11 @@ def _gain(fit: _Fit) -> float:
 
 def _out_of_proportion(fit: _Fit) -> dict[str, Any]:
     """Return the shares of small and large commands, and of either side, where they clearly differ."""
-    whole = fit.coefficients()
-    if not abs(whole.sum()) > 0.0:
-        return {}
-    acts = whole / whole.sum()  # what of the commands of the time is there by now
-    size = np.abs(fit.inputs @ acts)
+    size = np.abs(fit.inputs[:, _NOW])
     driven = size > _DRIVEN * size.max()
     middle = float(np.median(size[driven])) if driven.any() else 0.0
-    sizes = _apart(fit, acts, lambda now: np.abs(now) > middle)
-    sides = _apart(fit, acts, lambda now: now > 0.0)
+    sizes = _apart(fit, lambda inputs: np.abs(inputs) > middle)
+    sides = _apart(fit, lambda inputs: inputs > 0.0)
     found: dict[str, Any] = {}
     if sizes is not None:
         found |= {"below": middle, "small": sizes[0], "large": sizes[1]}
@@ -170,24 +167,39 @@ def _out_of_proportion(fit: _Fit) -> dict[str, Any]:
     return found
 
 
-def _apart(
-    fit: _Fit, acts: Floats, choose: Callable[[Floats], NDArray[np.bool_]]
-) -> tuple[Share, Share] | None:
+def _apart(fit: _Fit, choose: Callable[[Floats], NDArray[np.bool_]]) -> tuple[Share, Share] | None:
     """Return the shares of commands that are not chosen and that are; None unless they clearly differ."""
-    now = fit.inputs @ acts
-    driven = np.abs(now) > _DRIVEN * np.abs(now).max()
-    if min((driven & choose(now)).sum(), (driven & ~choose(now)).sum()) < _FEWEST:
+    now = fit.inputs[:, _NOW]
+    driven, chosen = np.abs(now) > _DRIVEN * np.abs(now).max(), choose(now)
+    if min((driven & chosen).sum(), (driven & ~chosen).sum()) < _FEWEST:
         return None
 
-    def part(some: _Fit, *, chosen: bool) -> float:
-        now = some.inputs @ acts
-        at = choose(now) == chosen
-        square = float(now[at] @ now[at])
-        return float(now[at] @ some.outputs[at]) / square if square > 0.0 else 0.0
+    def difference(some: _Fit) -> float:
+        return _difference(some, choose(some.inputs))
 
-    one, other = part(fit, chosen=False), part(fit, chosen=True)
-    spread = fit.scatter(lambda some: part(some, chosen=False) - part(some, chosen=True))
-    if abs(one - other) < max(_CLEAR * spread, _LARGE * max(abs(one), abs(other))):
+    def share(some: _Fit, *, chosen: bool) -> float:
+        size = np.square(some.inputs)
+        weight = float((size * (choose(some.inputs) != chosen)).sum()) / max(float(size.sum()), _TINY**2)
+        return _gain(some) + weight * (difference(some) if chosen else -difference(some))
+
+    values = [share(fit, chosen=which) for which in (False, True)]
+    least = max(_CLEAR * fit.scatter(difference), _LARGE * max(map(abs, values)))
+    if abs(values[1] - values[0]) < least:
         return None
-    stds = [fit.scatter(partial(part, chosen=which)) for which in (False, True)]
-    return Share(value=one, std=stds[0]), Share(value=other, std=stds[1])
+    stds = [fit.scatter(partial(share, chosen=which)) for which in (False, True)]
+    return Share(value=values[0], std=stds[0]), Share(value=values[1], std=stds[1])
+
+
+def _difference(fit: _Fit, chosen: NDArray[np.bool_]) -> float:
+    """Return by how much more of the chosen commands arrives.
+
+    What acts of the chosen commands has a coefficient of its own, and each tenth of the time a share of its
+    own, so that another ground is no difference.
+    """
+    whole = fit.coefficients()
+    if not abs(whole.sum()) > _TINY:
+        return 0.0
+    acts = whole / whole.sum()
+    own = (fit.parts[:, None] == np.arange(_BLOCKS)) * (fit.inputs @ acts)[:, None]
+    columns = np.column_stack(((fit.inputs * chosen) @ acts, np.delete(fit.inputs, _NOW, axis=1), own))
+    return float(np.linalg.lstsq(columns, fit.outputs, rcond=None)[0][0])

@@ -258,7 +258,10 @@ def _report(out: Output, model: Model, made: _Made, paths: dict[str, Path]) -> N
     if either and len(model.inputs) > 1:
         used, other = model.inputs
         out.line(f"For {MANY[used]}: {', '.join(either)}; --input {other} writes these for {MANY[other]}.")
-    out.table("Exported", (Column("for", whole=True), Column("parameter"), Column("value")), rows)
+    if rows:
+        out.table("Exported", (Column("for", whole=True), Column("parameter"), Column("value")), rows)
+    else:
+        out.line("No parameter could be written; the file holds the reasons alone:")
     for target, exported in made.files:
         for name, reason in exported.kept.items():
             out.line(f"{target.name}: {name} not written, its default stays: {reason}")

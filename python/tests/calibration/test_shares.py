@@ -98,3 +98,12 @@ def test_a_side_that_turns_less_is_told_from_the_other() -> None:
     assert yaw_rate.forward is not None
     assert yaw_rate.backward.value == pytest.approx(0.2, abs=0.04)
     assert yaw_rate.forward.value == pytest.approx(0.4, abs=0.08)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_another_ground_is_no_other_side_and_no_other_size(seed: int) -> None:
+    """On the first ground the robot turns right, mostly, and slowly; on the second to the left, and fast."""
+    first = replace(DRIVE, seconds=400.0, seed=seed, yaw_rates=(-0.6, 0.2), alpha=(-0.1, -0.3))
+    second = replace(first, seed=seed + 100, yaw_rates=(-0.2, 1.2), alpha=SLIP)
+    for axis in of_axes(Log(runs=tuple(simulated_log(each).runs[0] for each in (first, second)))):
+        assert (axis.below, axis.backward) == (None, None)

@@ -283,3 +283,21 @@ def test_standard_output_on_a_full_disk_is_said(drive_csv: Path) -> None:
         )
     assert done.returncode == 2
     assert done.stderr == "slipwise: cannot write: No space left on device (stdout)\n"
+
+
+def test_ctrl_c_while_modules_load_shows_no_traceback(folder: Path) -> None:
+    program = """
+import os, signal, sys
+
+class Interrupter:
+    def find_spec(self, name, *_):
+        if name == "slipwise.cli.main":
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupter())
+from slipwise.__main__ import main
+main()
+"""
+    command = [sys.executable, "-c", program, "--version"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
