@@ -30,6 +30,7 @@ SLIPWISE_TUNING(kFirst, 8.0);  // segments after which the first refit begins, a
 SLIPWISE_TUNING(kLast, std::size_t{256});
 SLIPWISE_TUNING(kFactor, std::numbers::sqrt2);  // of the segments, until another begins
 constexpr std::size_t kShortest = 1;            // segments that a refit takes at least
+constexpr std::size_t kShare = 14;              // slices of it that a segment does at most, some 100 us each
 
 /// Segments after which a refit takes effect that began after so many.
 std::size_t refitted_after(std::size_t segments) { return segments + std::max(kShortest, segments / 16); }
@@ -213,14 +214,18 @@ Estimate CausalFilter::reported() const {
 void CausalFilter::keep(const InputHistory& inputs, const Segment& segment) {
   kept_.push_back({.inputs = inputs, .segment = segment});
   const std::size_t count = kept_.size();
-  if (refit_ && count == refit_->until) {
-    end_refit();
+  if (refit_) {
+    const std::size_t due = refit_->due(count);
+    while (refit_->work.slices() < due && refit_->work.advance(kept_)) {
+    }
+    if (count >= refitted_after(refit_->begun) && refit_->work.done(count) && refit_->work.slices() <= due) {
+      end_refit();
+    }
   }
   if (count <= kLast && std::ssize(kept_) == std::lround(next_refit_)) {
     next_refit_ *= kFactor;
-    refit_.emplace(Refit{.work = {model_, before_, noise_before_, state_, settings_, count},
-                         .slip_std = slip_std_,
-                         .until = refitted_after(count)});
+    refit_.emplace(Refit{
+        .work = {model_, before_, noise_before_, state_, settings_, count}, .slip_std = slip_std_, .begun = count});
   }
   if (count >= kLast && !refit_) {
     kept_ = {};
@@ -228,12 +233,15 @@ void CausalFilter::keep(const InputHistory& inputs, const Segment& segment) {
   }
 }
 
-bool CausalFilter::refit_slice() { return refit_ && refit_->work.advance(kept_); }
+std::size_t CausalFilter::Refit::due(std::size_t segments) const { return kShare * (segments - begun); }
 
-/// The rest of the refit is done; its prior may have followed the speeds meanwhile.
+/// No more than the next segment would do: the refits of other filters have their turn.
+bool CausalFilter::refit_slice() {
+  return refit_ && refit_->work.slices() < refit_->due(kept_.size() + 1) && refit_->work.advance(kept_);
+}
+
+/// All of the refit is done; its prior may have followed the speeds meanwhile.
 void CausalFilter::end_refit() {
-  while (refit_slice()) {
-  }
   Refit& refit = present(refit_);
   std::optional<FilterState> found = std::move(refit.work).result();
   const Eigen::VectorXd slip_std = refit.slip_std;

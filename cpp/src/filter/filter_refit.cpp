@@ -101,6 +101,10 @@ void FilterRefit::learn_noise(const DrivenSegment& driven) {
 }
 
 bool FilterRefit::advance(std::span<const DrivenSegment> segments) {
+  if (done(segments.size())) {
+    return false;
+  }
+  ++slices_;
   switch (phase_) {
     case Phase::Weight:
       for (const std::size_t end = std::min(done_ + kSlice, count_); done_ < end; ++done_) {
@@ -109,29 +113,26 @@ bool FilterRefit::advance(std::span<const DrivenSegment> segments) {
       if (done_ == count_) {
         begin_search();
       }
-      return true;
+      break;
     case Phase::Search:
       if (!present(search_).advance(kSlice)) {
         end_search();
       }
-      return true;
+      break;
     case Phase::Noise:
       for (const std::size_t end = std::min(done_ + kSlice, count_); done_ < end; ++done_) {
         learn_noise(segments[done_]);
       }
       phase_ = done_ == count_ ? Phase::Follow : phase_;
-      return true;
+      break;
     case Phase::Follow:
-      if (done_ < segments.size()) {
-        state_.learn(model_, segments[done_].inputs, segments[done_].segment, noise_, iekf_);
-        ++done_;
-        return true;
-      }
-      return false;
+      state_.learn(model_, segments[done_].inputs, segments[done_].segment, noise_, iekf_);
+      ++done_;
+      break;
     case Phase::Failed:
       break;
   }
-  return false;
+  return true;
 }
 
 std::optional<FilterState> FilterRefit::result() && {

@@ -88,7 +88,7 @@ void CausalFilter::check_loaded(const CausalFilter& made) const {
   state_.scores.check_loaded(size);
   branches_.check_loaded(made.branches_, size);
   if (refit_) {
-    require(refit_->slip_std.size() == slip_std_.size() && refit_->until > kept_.size(), "a refit is overdue");
+    require(refit_->slip_std.size() == slip_std_.size() && refit_->begun <= kept_.size(), "a refit began later");
     refit_->work.check_loaded(model_, kept_.size());
   }
 }

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kPieces = 12.0;   // that it takes to learn a segment, or so
 constexpr double kMostPieces = 8;  // that a push learns of what waits, unless they are due
-constexpr int kSlices = 2;         // of refits that a push does where no segment waits: some 100 us each
+constexpr int kSlices = 2;         // of refits that a push does beside what waits: some 100 us each
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
@@ -142,6 +142,8 @@ void MotionLearner::push(const Measurement& measurement) {
   int pieces = pieces_now(stream_.newest() - before);
   while (pieces-- > 0 && work()) {
   }
+  for (int slice = 0; slice < kSlices && hypotheses_.refit_slice(); ++slice) {
+  }
 }
 
 /// Of what waits, so that it is learned evenly until it is due, where `passed` [s] lie between the stamps of pushes.
@@ -176,8 +178,6 @@ bool MotionLearner::work() {
     if (settings_.learn_disturbance) {  // so that a prediction need not find out where slip is now
       const Knowledge& known = known_.at(stream_.newest() - kReady);
       known_.slip_after(*known.disturbance, known.motion, known_.segments_before(stream_.newest()));
-    }
-    for (int slice = 0; slice < kSlices && hypotheses_.refit_slice(); ++slice) {
     }
     return false;
   }

@@ -34,8 +34,9 @@ class CausalFilter {
   ~CausalFilter();
 
   /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 256 segments a refit
-  /// of all of them begins; it takes effect a sixteenth as many segments later, whether `refit_slice` was called
-  /// meanwhile or not. The update returned is that of the segment alone.
+  /// of all of them begins; it takes effect a sixteenth as many segments later, or as many as its work takes by a
+  /// bounded share of it each, whether `refit_slice` was called meanwhile or not. The update returned is that of the
+  /// segment alone.
   IekfUpdate learn(const InputHistory& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
   /// Does a bounded slice of the refit's work; false where there is none to do now. Results do not depend on it.
   bool refit_slice();
@@ -108,7 +109,9 @@ class CausalFilter {
   struct Refit {
     FilterRefit work;
     Eigen::VectorXd slip_std;  ///< of the prior under which it began
-    std::size_t until;         ///< segments after which it takes effect
+    std::size_t begun;         ///< segments after which it began
+
+    std::size_t due(std::size_t segments) const;  ///< slices, after so many segments
   };
 
   MotionModel model_;

@@ -28,6 +28,12 @@ class FilterRefit {
 
   /// Does a slice of the work on `segments`: the first that were kept, and those since. Whether there was any.
   bool advance(std::span<const DrivenSegment> segments);
+  /// Slices that were done.
+  std::size_t slices() const { return slices_; }
+  /// Whether there is no more to do on so many segments.
+  bool done(std::size_t segments) const {
+    return phase_ == Phase::Failed || (phase_ == Phase::Follow && done_ == segments);
+  }
   /// The present estimate; empty if the fit failed.
   std::optional<FilterState> result() &&;
 
@@ -39,7 +45,7 @@ class FilterRefit {
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.before_, self.noise_before_, self.state_, self.noise_, self.iekf_, self.count_, self.phase_,
       self.done_);
-    a(self.data_, self.at_, self.places_, self.last_, self.search_, self.fitted_);
+    a(self.data_, self.at_, self.places_, self.last_, self.search_, self.fitted_, self.slices_);
   }
 
  private:
@@ -65,6 +71,7 @@ class FilterRefit {
   std::optional<Segment> last_;           ///< datum, whose neighbour shares the noise of a pose with it
   std::optional<BatchSearch> search_;
   std::size_t fitted_ = 0;  ///< data whose noise is learned
+  std::size_t slices_ = 0;
 };
 
 }  // namespace slipwise
