@@ -90,7 +90,7 @@ asan: build $(STAMPS)/doctest ## run the C++ tests under sanitizers of memory an
 
 # mypy has one process: it runs beside the others.
 lint: all $(STAMPS)/test $(STAMPS)/lint ## run all checks of style, types, layers and files
-	@mkdir -p build; mypy $(PYTHON_CHECKED) > build/types.log 2>&1 & types=$$!; \
+	@mkdir -p build; $(MAKE) --no-print-directory lint-types > build/types.log 2>&1 & types=$$!; \
 	  $(MAKE) --no-print-directory -k lint-files lint-layers lint-python lint-format lint-headers lint-tidy; failed=$$?; \
 	  wait $$types || failed=1; cat build/types.log; exit $$failed
 	@echo "lint: all checks passed"

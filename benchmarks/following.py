@@ -32,6 +32,7 @@ from slipwise.calibration.prepared_run import PreparedRun, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log
 from slipwise.segments import recording_of
+from slipwise.student import fraction_inside
 
 Floats = NDArray[np.float64]
 
@@ -126,8 +127,6 @@ def _learn_until(learner: _core.MotionLearner, run: PreparedRun, t: float) -> fl
 
 def found_of(columns: _core.HeldOutColumns, alarms: Floats, step_at: float) -> Found:
     """Return the errors of held-out predictions."""
-    from scipy.stats import f  # type: ignore[import-untyped]
-
     left = columns.measured - columns.pose
     left[:, 2] = np.arctan2(np.sin(left[:, 2]), np.cos(left[:, 2]))
     covariance = columns.covariance.reshape(-1, 3, 3)
@@ -136,7 +135,7 @@ def found_of(columns: _core.HeldOutColumns, alarms: Floats, step_at: float) -> F
         start=columns.start - step_at,
         position=np.hypot(left[:, 0], left[:, 1]),
         heading=np.abs(left[:, 2]),
-        inside=f.cdf(squared / 3.0, 3, columns.dof),
+        inside=fraction_inside(squared, columns.dof),
         alarms=alarms - step_at,
     )
 
