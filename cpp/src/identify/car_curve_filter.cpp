@@ -110,6 +110,23 @@ CurveBank turn_bank(const CarPrior& prior) {
   return {kSteeringLags.size(), mean, std, kTurnNoise, 1};
 }
 
+/// Calls `act` with each command that is held over [from, to] [s], and for how long.
+template <class Act>
+void each_hold(const InputHistory& commands, double from, double to, const Act& act) {
+  constexpr double kLongest = 0.05;  // [s] of a step
+  double now = from;
+  std::size_t next = commands.count_until(now);
+  while (now < to) {
+    const double change = next < commands.size() ? commands.time(next) : to;
+    const double end = std::min({to, std::max(change, now), now + kLongest});
+    if (end > now) {
+      act(next > 0 ? commands.sample(next - 1) : BodyTwist{}, end - now);
+      now = end;
+    }
+    next += next < commands.size() && change <= now ? 1 : 0;
+  }
+}
+
 /// Poses that jump would leave a yaw rate and a speed whose product outweighs all others.
 bool plausible(const CarCurves& car, const BodyTwist& twist) {
   const auto largest = [](const KnotCurve& curve) {
@@ -269,19 +286,9 @@ void CarCurveFilter::follow(const InputHistory& commands, double until, const Bo
   if (twist != nullptr) {
     held_ = *twist;
   }
-  constexpr double kLongest = 0.05;  // [s] of a step
   Means means;
-  double now = until_;
-  std::size_t next = commands.count_until(now);
-  while (now < until) {
-    const double change = next < commands.size() ? commands.time(next) : until;
-    const double end = std::min({until, std::max(change, now), now + kLongest});
-    if (end > now) {
-      step(next > 0 ? commands.sample(next - 1) : BodyTwist{}, end - now, held_, means);
-      now = end;
-    }
-    next += next < commands.size() && change <= now ? 1 : 0;
-  }
+  each_hold(commands, until_, until,
+            [&](const BodyTwist& command, double duration) { step(command, duration, held_, means); });
   until_ = until;
   if (twist != nullptr) {
     learn(means, *twist);
@@ -326,14 +333,41 @@ CarCurves CarCurveFilter::straight() const {
           .curvature = {.at = {-1.0, 1.0}, .value = {-curvature, curvature}, .std = {0.0, 0.0}}};
 }
 
+std::size_t CarCurveFilter::best_observer() const {
+  return static_cast<std::size_t>(std::ranges::min_element(observer_score_) - observer_score_.begin());
+}
+
 KnownMotion CarCurveFilter::motion() const {
-  const auto best = std::ranges::min_element(observer_score_) - observer_score_.begin();
   return {.t = until_,
-          .speed = observers_[static_cast<std::size_t>(best)].speed,
+          .speed = observers_[best_observer()].speed,
           .turn = turn_rest_.rest(),
           .turn_lag = turn_rest_.lag(),
           .sideways = sideways_.rest(),
           .sideways_lag = sideways_.lag()};
+}
+
+KnownMotion CarCurveFilter::motion(const InputHistory& commands, double t, const BodyTwist& twist,
+                                   double weight) const {
+  const std::size_t best = best_observer();
+  CarState state = observers_[best];
+  double distance = 0.0;
+  each_hold(commands, until_, t, [&](const BodyTwist& command, double duration) {
+    const double before = state.speed;
+    state = advanced(curves_, state, command, duration);
+    distance += 0.5 * duration * (before + state.speed);
+  });
+  const double seconds = t - until_, counted = plausible(lasting_, twist) ? weight : 0.0;
+  const double turn = twist.omega - car_twist(curves_, {.speed = twist.v, .steering = state.steering}).omega;
+  KnownMotion now = motion();
+  const auto followed = [&](double before, double lag, double measured) {
+    const double left = lag_output(before, 0.0, lag, seconds);
+    return left + counted * (measured - left);
+  };
+  now.t = t;
+  now.speed = state.speed + counted * kGains[best] * (twist.v - distance / seconds);
+  now.turn = followed(now.turn, now.turn_lag, turn);
+  now.sideways = followed(now.sideways, now.sideways_lag, twist.vy);
+  return now;
 }
 
 }  // namespace slipwise

@@ -16,6 +16,7 @@ namespace slipwise {
 namespace {
 
 constexpr double kInterval = 0.2;  // [s] between the poses of a twist; shorter, noise of poses hides the motion
+constexpr double kFresh = 0.05;    // [s] between moments at which what the car does is known
 constexpr double kLongest = 1.0;   // [s] of a twist; over longer ones a car does too much
 constexpr double kBefore = 5.0;    // [s] of twists before a segment, which delays and lags behind the curves ask for
 constexpr double kLongAgo = 1e5;   // [s] the first of them was held for
@@ -89,7 +90,8 @@ void CarStream::push_pose(const MeasuredPose& pose) {
   }
   const double seconds = since_ ? pose.t - since_->t : 0.0;
   const bool joined = since_ && pose.frame == since_->frame && !later(seconds, kLongest);
-  if (joined && later(kInterval, seconds)) {
+  const bool part = joined && later(kInterval, seconds);
+  if (part && later(kFresh, motions_.empty() ? seconds : pose.t - std::max(since_->t, motions_.back().t))) {
     return;
   }
   const bool given = !given_.unknown_since(filter_.until(), pose.t).has_value();
@@ -99,6 +101,13 @@ void CarStream::push_pose(const MeasuredPose& pose) {
     const Pose2 moved = between({since_->x, since_->y, since_->yaw}, {pose.x, pose.y, pose.yaw});
     const Eigen::Vector3d twist = adjoint(sensor_) * log(moved) / seconds;
     measured = {.v = twist.x(), .vy = twist.y(), .omega = twist.z()};
+  }
+  if (part) {  // too short to learn from
+    if (measured) {
+      const CarCurveFilter& filter = follower_ ? *follower_ : filter_;
+      motions_.push_back(filter.motion(commands, pose.t, *measured, seconds / kInterval));
+    }
+    return;
   }
   filter_.follow(commands, pose.t, measured ? &*measured : nullptr);
   if (follower_) {

@@ -170,5 +170,24 @@ TEST_CASE("a steady sideways slip is followed, with a lag of its own") {
   CHECK(motion.sideways_lag == doctest::Approx(1.5));
 }
 
+TEST_CASE("after the last twist that was learned, what the car does follows one of a shorter time by its weight") {
+  Drive drive = random_drive(true_car(), 40.0, 0.01, 2);
+  for (BodyTwist& twist : drive.twists) {
+    twist.vy = -0.3;
+  }
+  const CarCurveFilter filter = learned(drive, 10000);
+  const double t = filter.until() + 0.1, left = -0.3 * std::exp(-0.1 / 1.5);
+  const BodyTwist twist{.v = filter.motion().speed + 0.4, .vy = 0.1, .omega = 0.0};
+  const KnownMotion none = filter.motion(drive.commands, t, twist, 0.0);
+  const KnownMotion half = filter.motion(drive.commands, t, twist, 0.5);
+  CHECK(none.t == t);
+  CHECK(none.sideways == doctest::Approx(left));
+  CHECK(half.sideways == doctest::Approx(0.5 * (left + 0.1)));
+  CHECK(half.speed > none.speed);
+  CHECK(filter.motion().sideways == doctest::Approx(-0.3));
+  const KnownMotion jumped = filter.motion(drive.commands, t, {.v = 60.0, .vy = 0.0, .omega = -40.0}, 1.0);
+  CHECK(jumped.speed == none.speed);
+}
+
 }  // namespace
 }  // namespace slipwise

@@ -114,6 +114,27 @@ double missed(const DrivenSegment& driven) {
   return (at.vector() - rows_of(driven.segment.measured)).norm();
 }
 
+TEST_CASE("what a car does at a start is known by all poses up to there, between the twists that are learned too") {
+  Recording run = drive(10.2);
+  run.poses.resize(102);  // of every tenth of a second, the last at 10.1 s; twists that are learned end at 10 s
+  const auto speed = [&] {
+    CarStream stream({.top_speed = 4.0, .curvature = 2.0}, {}, 0.5);
+    for (const InputSample& command : run.commands) {
+      stream.push_command(command, 0.5);
+    }
+    for (const MeasuredPose& pose : run.poses) {
+      stream.push_pose(pose);
+    }
+    return stream.inputs(10.1, 10.2, 10.1).at(10.11).v;
+  };
+  const double before = speed();
+  MeasuredPose& last = run.poses.back();
+  REQUIRE(last.t == doctest::Approx(10.1));
+  last.x += 0.05 * std::cos(last.yaw);
+  last.y += 0.05 * std::sin(last.yaw);
+  CHECK(speed() > before + 0.05);
+}
+
 TEST_CASE("held curves drive the segments that are cut without them, and need not be learned first") {
   const std::vector runs{drive(40.0)};
   StreamSettings settings = car_settings();

@@ -81,6 +81,9 @@ class CarCurveFilter {
   CarCurves straight() const;
   /// What it does now, followed by the curves and set right by what was measured.
   KnownMotion motion() const;
+  /// The same at `t` [s] after that, under the commands. `twist` is the mean since then, which counts by `weight`, from
+  /// 0 to 1: of a shorter time than those that are learned, it is less sure.
+  KnownMotion motion(const InputHistory& commands, double t, const BodyTwist& twist, double weight) const;
 
   /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
   void check_loaded(const CarCurveFilter& made) const;
@@ -98,6 +101,7 @@ class CarCurveFilter {
   void step(const BodyTwist& command, double duration, const BodyTwist& moved, Means& means);
   void learn(const Means& means, const BodyTwist& twist);
   void set_curves();
+  std::size_t best_observer() const;
 
   CarCurves curves_, lasting_;
   CurveCopies speed_, turn_;
