@@ -202,6 +202,11 @@ def at_rate(rate: float) -> Callable[[Poses], Poses]:
     return lambda p: replace(p, t=p.t[:1] + rate * (p.t - p.t[:1]))
 
 
+def stepping(seconds: float) -> Callable[[Poses], Poses]:
+    """Set the clock of the poses ahead in the middle."""
+    return lambda p: replace(p, t=p.t + seconds * (p.t > 0.5 * (p.t[:1] + p.t[-1:])))
+
+
 def watchdog(run: Run) -> Run:
     """Send each command once in 1.3 s; the robot stops half a second after it."""
     if run.commands is None or len(run.commands) == 0 or len(run.poses) < 10:
@@ -360,6 +365,8 @@ FAULTS: dict[str, Fault] = {
     "twist in the parent's frame": Fault(rotated_into_parent, ("parent-twist",), ("wheels",)),
     "two publishers": Fault(two_publishers, ("two-sources",), ("wheels",)),
     "poses in simulated time": of_poses(at_rate(0.8), "clock-drift"),
+    "poses' clock drifts": of_poses(at_rate(1.004), "clock-drift"),
+    "poses' clock steps": of_poses(stepping(0.3), "clock-drift"),
     "poses 2 s late": of_poses(later(2.0), "clock-offset"),
     "poses 2 s early": of_poses(later(-2.0), "clock-offset"),
 }

@@ -110,11 +110,20 @@ class Intake:
             if self._stops is not None:
                 self._stops.restart()
         for each in taken:
-            self._recent.take(each)
+            self._keep(each)
             for zero in self._ends.before(each):
                 self._push(zero)
             self._gates.take(each)
             self._push(each)
+
+    def _keep(self, sample: Stamped) -> None:
+        """Keep what the learner takes for a while; whose poses it does not know it does not take."""
+        if not isinstance(sample, Pose):
+            self._recent.take(sample)
+            return
+        pose = sample if self._learner.tells_sources else self._of_one_source(sample)
+        if self._learner.knows_source(pose.source):
+            self._recent.take(pose, further=not self._learner.is_first(pose.source))
 
     def contradictions(self) -> tuple[Finding, ...]:
         """Return what a stream shows that the learner does not keep, such as how commands end."""

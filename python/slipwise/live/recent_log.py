@@ -22,7 +22,7 @@ _Row = tuple[float, ...]
 
 
 class RecentLog:
-    """Commands, wheels and poses of one source as they came.
+    """Commands, wheels and poses of each source as they came.
 
     Args:
         input_name: "command" or "wheel", the input that is learned from.
@@ -31,20 +31,32 @@ class RecentLog:
 
     def __init__(self, input_name: str, unknown_after: float) -> None:
         self._input, self._unknown_after = input_name, unknown_after
-        self._rows: dict[type, deque[_Row]] = {kind: deque(maxlen=MOST) for kind in (Command, Wheels, Pose)}
+        self._rows: dict[type | str, deque[_Row]] = {}  # by the kind; of further sources, by the name
+        self._first = ""  # name of the first source
         self._newest, self._looked_at = -math.inf, math.nan
         self._found: dict[str, Finding] = {}
 
-    def take(self, sample: Stamped) -> None:
-        """Take a sample; one that is not later than those of its kind says nothing."""
+    def take(self, sample: Stamped, *, further: bool = False) -> None:
+        """Take a sample; one that is not later than those of its kind says nothing.
+
+        Args:
+            sample: a command, wheels or a pose; other samples are not kept.
+            further: a pose of a source beside the first, by whose name it is kept.
+        """
+        kind: type | str = type(sample)
         if isinstance(sample, Pose):
             tilt = (math.nan if angle is None else angle for angle in (sample.roll, sample.pitch))
             row: _Row = (sample.t, sample.x, sample.y, sample.yaw, *tilt)
+            if further:
+                kind = sample.source
+                row = (*row[:3], 0.0 if math.isnan(sample.yaw) else sample.yaw, *row[4:])
+            else:
+                self._first = sample.source
         elif isinstance(sample, Command | Wheels):
             row = (sample.t, sample.v, sample.vy, sample.omega)
         else:
             return
-        rows = self._rows[type(sample)]
+        rows = self._rows.setdefault(kind, deque(maxlen=MOST))
         if not all(map(math.isfinite, row[:4])) or (rows and row[0] <= rows[-1][0]):
             return
         rows.append(row)
@@ -54,8 +66,7 @@ class RecentLog:
 
     def restart(self) -> None:
         """Another recording begins, or the clock was set."""
-        for rows in self._rows.values():
-            rows.clear()
+        self._rows.clear()
         self._newest, self._looked_at = -math.inf, math.nan
 
     def found(self) -> tuple[Finding, ...]:
@@ -71,13 +82,17 @@ class RecentLog:
 
     def _log(self) -> Log:
         commands, wheels = (self._inputs(kind) for kind in (Command, Wheels))
-        rows = self._rows[Pose]
-        poses = empty_poses()
-        if rows:
-            t, x, y, yaw, roll, pitch = np.ascontiguousarray(np.array(rows).T)
-            poses = Poses(t, x, y, yaw, np.zeros(len(t), np.int64), roll=roll, pitch=pitch)
-        return Log(runs=(Run("live", commands, wheels, poses),))
+        others = {name: self._poses(name) for name in self._rows if isinstance(name, str)}
+        run = Run("live", commands, wheels, self._poses(Pose), others=others, source=self._first)
+        return Log(runs=(run,))
+
+    def _poses(self, kind: type | str) -> Poses:
+        rows = self._rows.get(kind)
+        if not rows:
+            return empty_poses()
+        t, x, y, yaw, roll, pitch = np.ascontiguousarray(np.array(rows).T)
+        return Poses(t, x, y, yaw, np.zeros(len(t), np.int64), roll=roll, pitch=pitch)
 
     def _inputs(self, kind: type) -> Inputs | None:
-        rows = self._rows[kind]
+        rows = self._rows.get(kind)
         return Inputs(*np.ascontiguousarray(np.array(rows).T)) if rows else None

@@ -134,7 +134,7 @@ def _coarse(drive: Sequence[Driven], motion: PoseMotion) -> ClockMatch:
         what = f"the log spans {(stop - begin) / _DAY:.0f} days, too long to look for an offset of clocks"
         raise LogError(what, advice="give the seconds to add with --pose-clock-offset")
     grid: Floats = begin + _COARSE * np.arange(int((stop - begin) / _COARSE) + 1, dtype=np.float64)
-    driven = _input_means(drive, grid, grid + _COARSE)
+    driven = input_means(drive, grid, grid + _COARSE)
     own = motion.start[0] + _COARSE * np.arange(int((motion.stop[-1] - motion.start[0]) / _COARSE) + 1)
     at = np.clip(np.searchsorted(motion.start, own, side="right") - 1, 0, None)
     inside = own < motion.stop[at]
@@ -212,15 +212,21 @@ def agreements_of(drive: Sequence[Driven], motion: PoseMotion, offsets: Floats) 
     """Return what `agreements` does of inputs that were summed before."""
     scores = np.empty(len(offsets))
     for k, offset in enumerate(offsets.tolist()):
-        driven = _input_means(drive, motion.start + offset, motion.stop + offset)
+        driven = input_means(drive, motion.start + offset, motion.stop + offset)
         found = [_correlation(f, g) for f, g in zip((motion.speed, motion.rate), driven, strict=True)]
         known = [value for value in found if np.isfinite(value)]
         scores[k] = float(np.mean(known)) if known else -1.0
     return scores
 
 
-def _input_means(drive: Sequence[Driven], start: Floats, stop: Floats) -> tuple[Floats, Floats]:
-    """Return the mean speed and yaw rate of the drive [N] between stamps [N], NaN where it is unknown."""
+def input_means(drive: Sequence[Driven], start: Floats, stop: Floats) -> tuple[Floats, Floats]:
+    """Return the mean speed and yaw rate of the drive between stamps, NaN where it is unknown.
+
+    Args:
+        drive: the inputs of each run.
+        start: of each stretch [N] in s.
+        stop: its end [N] in s.
+    """
     speed, rate = np.full(len(start), np.nan), np.full(len(start), np.nan)
     for part in drive:
         known = part.given.known(start, stop) > _KNOWN * (stop - start) + _core.SAME_STAMP

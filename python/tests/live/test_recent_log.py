@@ -26,6 +26,18 @@ def samples_of(log: Log) -> list[Stamped]:
     return sorted(samples, key=lambda each: each.t)
 
 
+def test_a_source_of_another_scale_is_found_beside_the_first() -> None:
+    for scale, kinds in ((1.0, set()), (1.06, {"source-scale"})):
+        recent, found = RecentLog("wheel", 0.5), set[str]()
+        for sample in samples_of(LOG):
+            recent.take(replace(sample, source="gps") if isinstance(sample, Pose) else sample)
+            if isinstance(sample, Pose):
+                further = replace(sample, x=scale * sample.x, y=scale * sample.y, yaw=np.nan, source="map")
+                recent.take(further, further=True)
+            found |= {each.kind for each in recent.found()}
+        assert found == kinds
+
+
 def _columns(series: object, *names: str) -> list[list[float]]:
     return [np.asarray(getattr(series, name)).tolist() for name in ("t", *names)]
 
@@ -45,6 +57,8 @@ def kinds_of(log: Log) -> set[str]:
         ("odometry echoes the command", "echoed-commands"),
         ("frozen localiser", "frozen-poses"),
         ("poses 2 s late", "clock-offset"),
+        ("poses' clock drifts", "clock-drift"),
+        ("poses' clock steps", "clock-drift"),
     ],
 )
 def test_a_fault_is_found_while_the_robot_drives(fault: str, kind: str) -> None:

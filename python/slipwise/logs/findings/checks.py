@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from slipwise import _core
 from slipwise.logs.findings.askew_attitude import AskewAttitude
+from slipwise.logs.findings.clock_drift import ClockDrift
 from slipwise.logs.findings.clocks import CLOCKS
 from slipwise.logs.findings.command_answers import DeadBand, EchoedCommands, Overridden
 from slipwise.logs.findings.command_stops import CommandTimeout
@@ -26,12 +27,13 @@ from slipwise.logs.findings.headings import (
 )
 from slipwise.logs.findings.late_answers import LateAnswers
 from slipwise.logs.findings.plausibility import ENOUGH, ENOUGH_TURN, Implausible, UnreachablePoses
-from slipwise.logs.findings.pose_streams import ClockDrift, ClockOffset, FrozenPoses
+from slipwise.logs.findings.pose_streams import ClockOffset, FrozenPoses
 from slipwise.logs.findings.readings import READINGS
 from slipwise.logs.findings.repeated_wheels import RepeatedWheels
 from slipwise.logs.findings.saturation import Saturated
 from slipwise.logs.findings.seen import Seen, WholeLog
 from slipwise.logs.findings.sensor_place import SensorOffCentre
+from slipwise.logs.findings.source_scale import SourceScale
 from slipwise.logs.findings.sources import TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
@@ -78,6 +80,7 @@ WHOLE: tuple[Check, ...] = (
     AskewAttitude(),
     ClockOffset(),
     ClockDrift(),
+    SourceScale(),
     TwoSources(),
 )
 #: What a live node looks for in its last minutes; two sources it watches sample by sample.
@@ -92,6 +95,8 @@ OF_STREAM: tuple[Check, ...] = (
     DriftingPoses(),
     AskewAttitude(),
     ClockOffset(),
+    ClockDrift(),
+    SourceScale(),
 )
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(

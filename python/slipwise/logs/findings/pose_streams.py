@@ -11,7 +11,7 @@ from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.seen import WORDS, WholeLog
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Floats, Inputs, Poses, Run
-from slipwise.logs.pose_clock import Driven, agreements, agreements_of, pose_motion
+from slipwise.logs.pose_clock import agreements, pose_motion
 
 _LONG = 3.0  # s, and as many usual steps,
 _STEPS = 20.0
@@ -20,11 +20,6 @@ _ARM = 0.3  # m at which a turn counts as distance
 _FAR = 3.0  # s in which another clock is looked for
 _OFFSETS = np.arange(-_FAR, _FAR + 0.05, 0.1)  # s
 _APART = {"wheel": (-0.6, 0.5), "command": (-1.8, 0.3)}  # s added to poses; drives answer commands late
-_BEGIN = 100.0  # s in which rates are compared
-_KNOWN = 40.0  # s of them in which inputs are known, at least
-_DRIFT = 0.02  # a rate so far from 1 is told by 100 s
-_RATES, _RATE = 0.4, 0.005  # rates are tried as far from 1, in such steps
-_NONE = np.zeros(1)
 _FIT, _BETTER = 0.7, 0.15  # least agreement at another clock, and by how much it beats none
 
 
@@ -53,50 +48,6 @@ class FrozenPoses(Check):
         )
 
 
-class ClockDrift(Check):
-    """Poses whose time runs at another rate than that of the inputs."""
-
-    kind, family, spoils = "clock-drift", "clocks", False
-    means = "poses and inputs of a table run at other rates: simulated time at a part of real time, a drift"
-    shows = "over the first 100 s both agree at a rate other than 1, and at 1 they do not"
-    cure = "`use_sim_time` for every node; date both by one clock before the table is written"
-
-    def look_at(self, whole: WholeLog) -> Finding | None:
-        """Try rates of the poses' time about their first stamp, where no offset makes both agree."""
-        name = _told_by(whole)
-        run = max(whole.log.runs, key=lambda each: len(each.poses), default=None)
-        inputs = None if run is None else _inputs(run, name)
-        if run is None or inputs is None or len(run.poses) < 3:
-            return None
-        p = run.poses
-        begin = p.t < p.t[0] + _BEGIN
-        held = HeldSum.of(inputs, inputs.v, whole.unknown_after)
-        if float(held.known(p.t[:1], p.t[:1] + _BEGIN)[0]) < _KNOWN:
-            return None
-        heading = np.full(len(p), np.nan) if p.course else p.yaw
-        drive = [Driven.of(inputs, 0.0, whole.unknown_after)]
-
-        def fit(rate: float, offsets: Floats) -> float:
-            t = p.t[0] + (p.t[begin] - p.t[0]) / rate
-            motion = pose_motion(t, p.x[begin], p.y[begin], heading[begin])
-            return float(agreements_of(drive, motion, offsets).max())
-
-        none = fit(1.0, _OFFSETS)
-        if none > _FIT:
-            return None
-        rates = 1.0 + np.arange(-_RATES, _RATES + 0.5 * _RATE, _RATE)
-        fits = [fit(rate, _NONE) for rate in rates.tolist()]
-        best = int(np.argmax(fits))
-        if abs(rates[best] - 1.0) < _DRIFT or fits[best] < max(_FIT, none + _BETTER):
-            return None
-        return self.found(
-            f"the poses' time runs at {rates[best]:.3g} of that of the {WORDS[name].name}: so they agree "
-            f"({fits[best]:.2f}), and at the same rate they do not ({none:.2f})",
-            "Where this is a simulation, set use_sim_time for every node; else date both by one clock.",
-            evidence=float(rates[best]),
-        )
-
-
 class ClockOffset(Check):
     """Poses whose motion fits that of the inputs far better at another time."""
 
@@ -107,15 +58,15 @@ class ClockOffset(Check):
 
     def look_at(self, whole: WholeLog) -> Finding | None:
         """Try offsets of 3 s either way."""
-        name = _told_by(whole)
-        runs = [run for run in whole.log.runs if len(run.poses) > 1 and _inputs(run, name) is not None]
+        name = told_by(whole)
+        runs = [run for run in whole.log.runs if len(run.poses) > 1 and inputs_of(run, name) is not None]
         poses = [run.poses for run in runs]
         if not poses or any(a.t[-1] >= b.t[0] for a, b in itertools.pairwise(poses)):
             return None
         heading = [np.full(len(p), np.nan) if p.course else p.yaw for p in poses]
         columns = (np.concatenate([getattr(p, name) for p in poses]) for name in ("t", "x", "y"))
         motion = pose_motion(*columns, np.concatenate(heading))  # type: ignore[call-arg]
-        inputs = [series for run in runs if (series := _inputs(run, name)) is not None]
+        inputs = [series for run in runs if (series := inputs_of(run, name)) is not None]
         fits = agreements(inputs, motion, _OFFSETS, whole.unknown_after)
         best, none = int(np.argmax(fits)), float(fits[len(_OFFSETS) // 2])
         offset, (low, high) = float(_OFFSETS[best]), _APART[name]
@@ -131,12 +82,13 @@ class ClockOffset(Check):
         )
 
 
-def _told_by(whole: WholeLog) -> str:
+def told_by(whole: WholeLog) -> str:
     """Return which input tells of clocks: wheels, which no drive delays, where there are any."""
     return "wheel" if any(run.wheels for run in whole.log.runs) else "command"
 
 
-def _inputs(run: Run, name: str) -> Inputs | None:
+def inputs_of(run: Run, name: str) -> Inputs | None:
+    """Return commands or wheels of a run; None where there are fewer than two."""
     inputs = run.commands if name == "command" else run.wheels
     return inputs if inputs is not None and len(inputs) > 1 else None
 
@@ -144,7 +96,7 @@ def _inputs(run: Run, name: str) -> Inputs | None:
 def _frozen(run: Run, whole: WholeLog) -> list[tuple[float, str]]:
     """Return seconds and place of each stretch of a run."""
     inputs, poses = (
-        _inputs(run, whole.input_name),
+        inputs_of(run, whole.input_name),
         run.poses if run.poses.measured is None else run.poses.measured,
     )
     if inputs is None or len(poses) < 3:
