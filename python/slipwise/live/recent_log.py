@@ -45,8 +45,8 @@ class RecentLog:
         """
         kind: type | str = type(sample)
         if isinstance(sample, Pose):
-            tilt = (math.nan if angle is None else angle for angle in (sample.roll, sample.pitch))
-            row: _Row = (sample.t, sample.x, sample.y, sample.yaw, *tilt)
+            beside = (sample.roll, sample.pitch, sample.z)
+            row: _Row = (sample.t, sample.x, sample.y, sample.yaw, *map(_or_nan, beside))
             if further:
                 kind = sample.source
                 row = (*row[:3], 0.0 if math.isnan(sample.yaw) else sample.yaw, *row[4:])
@@ -90,9 +90,13 @@ class RecentLog:
         rows = self._rows.get(kind)
         if not rows:
             return empty_poses()
-        t, x, y, yaw, roll, pitch = np.ascontiguousarray(np.array(rows).T)
-        return Poses(t, x, y, yaw, np.zeros(len(t), np.int64), roll=roll, pitch=pitch)
+        t, x, y, yaw, roll, pitch, z = np.ascontiguousarray(np.array(rows).T)
+        return Poses(t, x, y, yaw, np.zeros(len(t), np.int64), z=z, roll=roll, pitch=pitch)
 
     def _inputs(self, kind: type) -> Inputs | None:
         rows = self._rows.get(kind)
         return Inputs(*np.ascontiguousarray(np.array(rows).T)) if rows else None
+
+
+def _or_nan(value: float | None) -> float:
+    return math.nan if value is None else value

@@ -103,11 +103,16 @@ def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Stampe
     commands, wheels, attitudes = (rows.tolist() for rows in others)
     poses = (sourced_rows(run.run, measured, sources) if sources else measured).tolist()
     tilt = {t: (roll, pitch) for t, roll, pitch in attitudes}
+    seen = run.run.poses
+    heights = {} if seen.z is None else dict(zip(seen.t.tolist(), seen.z.tolist(), strict=True))
     streams: tuple[list[tuple[float, int, int, Sample]], ...] = (
         [(t, 0, i, Command(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(commands)],
         [(t, 1, i, Wheels(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(wheels)],
         [(t, 2, i, KnownForce(t, x, y)) for i, (t, x, y) in enumerate(force_rows(run.run).tolist())],
-        [(row[0], 3, i, _pose(row, tilt.get(row[0]), sources)) for i, row in enumerate(poses)],
+        [
+            (row[0], 3, i, _pose(row, tilt.get(row[0]), heights.get(row[0]), sources))
+            for i, row in enumerate(poses)
+        ],
         *_readings(run),
     )
     for _, _, _, sample in heapq.merge(*streams):
@@ -122,10 +127,12 @@ def _readings(run: PreparedRun) -> list[list[tuple[float, int, int, Sample]]]:
     ]
 
 
-def _pose(row: list[float], tilt: tuple[float, float] | None, sources: Sequence[str]) -> Pose:
+def _pose(
+    row: list[float], tilt: tuple[float, float] | None, z: float | None, sources: Sequence[str]
+) -> Pose:
     t, x, y, yaw, frame, std_xy, std_yaw, *sort = row
     number, fix = (int(each) for each in sort or (0, 0))
-    roll, pitch = (tilt if number == 0 else None) or (None, None)
+    roll, pitch, z = (*(tilt or (None, None)), z) if number == 0 else (None, None, None)
     std = (std_xy or None, std_yaw or None)
     source = sources[number] if number else ""
-    return Pose(t, x, y, yaw, *std, str(int(frame)), roll, pitch, source, FIXES[fix])
+    return Pose(t, x, y, yaw, *std, str(int(frame)), roll, pitch, source, FIXES[fix], z)

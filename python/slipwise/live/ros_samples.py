@@ -256,7 +256,7 @@ def to_pose(  # noqa: PLR0913 - the last four have defaults
     covariances = _Covariances(lambda count: say(ZeroCovariance.of(topic, count).sentence))
 
     def pose(message: Any, t: float) -> Pose | None:
-        x, y, _, *rest = values(message)
+        x, y, z, *rest = values(message)
         qx, qy, qz, qw, var_x, var_y, var_yaw = rest
         covariances.take(var_x, var_y, var_yaw)
         angles = rotation_of(qx, qy, qz, qw)
@@ -267,10 +267,10 @@ def to_pose(  # noqa: PLR0913 - the last four have defaults
                 "--set live.positions=true uses the positions alone"
             )
         if angles is None:
-            return Pose(t + late, x, y, math.nan, std_xy, frame=message.header.frame_id)
+            return Pose(t + late, x, y, math.nan, std_xy, frame=message.header.frame_id, z=z)
         roll, pitch, yaw = angles
         robot = turned_one((yaw, *tilts.take(roll, pitch, t)), offset)
-        return Pose(t + late, x, y, robot[0], std_xy, std_yaw, message.header.frame_id, *robot[1:])
+        return Pose(t + late, x, y, robot[0], std_xy, std_yaw, message.header.frame_id, *robot[1:], z=z)
 
     return pose
 
@@ -299,16 +299,16 @@ class FixPoses:
             return None
         fix = (latitude, longitude, altitude if math.isfinite(altitude) else 0.0)
         self._origin = self._origin or fix
-        x, y, _ = in_tangent_plane(ecef(*_row(fix)), *_row(self._origin))[0].tolist()
+        x, y, z = in_tangent_plane(ecef(*_row(fix)), *_row(self._origin))[0].tolist()
         std_xy, sort = deviation(*variances), fix_of_status(status)
         frame = message.header.frame_id
         if self._imu is None:
-            return Pose(t + self._late, x, y, math.nan, std_xy, frame=frame, fix=sort)
+            return Pose(t + self._late, x, y, math.nan, std_xy, frame=frame, fix=sort, z=z)
         oriented = self._imu.at(t)
         if oriented is None:
             return None
         yaw, roll, pitch = turned_one(oriented, self._offset)
-        return Pose(t + self._late, x, y, yaw, std_xy, frame=frame, roll=roll, pitch=pitch, fix=sort)
+        return Pose(t + self._late, x, y, yaw, std_xy, frame=frame, roll=roll, pitch=pitch, fix=sort, z=z)
 
 
 def _row(fix: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

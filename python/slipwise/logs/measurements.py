@@ -52,6 +52,7 @@ class Pose:
     pitch: float | None = None  # rad; by REP-103 nose down is positive
     source: str = ""  # that measured it, of several; nothing: the first
     fix: str = ""  # what a satellite receiver says of it, where fixes are distinguished
+    z: float | None = None  # m, up; nothing is learned from it
 
 
 @dataclass(frozen=True, slots=True)

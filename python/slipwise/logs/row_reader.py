@@ -212,6 +212,7 @@ class RowReader:
             pitch,
             source,
             fix,
+            _known(beside, "z"),
         )
 
     def _twist(

@@ -26,6 +26,22 @@ def samples_of(log: Log) -> list[Stamped]:
     return sorted(samples, key=lambda each: each.t)
 
 
+def test_heights_clear_a_sensor_that_seems_to_lean_where_a_spiral_climbs() -> None:
+    leaning, climbing = RecentLog("wheel", 0.5), RecentLog("wheel", 0.5)
+    said, cleared = set[str](), set[str]()
+    for t in np.arange(0.0, 150.0, 0.1).tolist():  # 1 m/s, a round of 20 m, 0.12 rad up
+        yaw = 0.314 * t
+        pose = Pose(t, 3.18 * np.sin(yaw), -3.18 * np.cos(yaw), yaw, roll=0.01, pitch=-0.12)
+        for recent in (leaning, climbing):
+            recent.take(Wheels(t, 1.0, 0.314))
+        leaning.take(pose)
+        climbing.take(replace(pose, z=0.12 * t))
+        said |= {each.kind for each in leaning.found()}
+        cleared |= {each.kind for each in climbing.found()}
+    assert "askew-attitude" in said
+    assert "askew-attitude" not in cleared
+
+
 def test_a_source_of_another_scale_is_found_beside_the_first() -> None:
     for scale, kinds in ((1.0, set()), (1.06, {"source-scale"})):
         recent, found = RecentLog("wheel", 0.5), set[str]()

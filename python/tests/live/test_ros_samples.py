@@ -63,7 +63,8 @@ def test_commands_of_every_type_are_scaled() -> None:
 def test_an_odometry_is_wheels_or_a_pose_with_its_deviations() -> None:
     assert to_wheels(ODOMETRY, LogOptions())(odometry(0.0), 2.0) == Wheels(2.0, 0.4, 0.2, 0.1)
     found = to_pose(ODOMETRY, LogOptions(pose_yaw_offset=0.1))(odometry(0.04), 2.0)
-    assert found == Pose(2.0, 1.0, 2.0, pytest.approx(0.6), pytest.approx(0.2), pytest.approx(0.2), "map")
+    angle, std = pytest.approx(0.6), pytest.approx(0.2)
+    assert found == Pose(2.0, 1.0, 2.0, angle, std, std, "map", z=0.0)
     unknown = to_pose(ODOMETRY, LogOptions())(odometry(0.0), 2.0)
     assert unknown is not None
     assert unknown.std_xy is None
