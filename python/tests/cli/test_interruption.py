@@ -294,6 +294,7 @@ class Interrupter:
         if name == "slipwise.cli.main":
             os.kill(os.getpid(), signal.SIGINT)
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # whatever the tests were started with
 sys.meta_path.insert(0, Interrupter())
 from slipwise.__main__ import main
 main()
