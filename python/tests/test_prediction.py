@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -187,6 +188,17 @@ def test_baseline_model_and_vendor_multiplier_are_their_formulas(v: float, omega
 def test_a_horizon_of_years_is_refused(model: Model) -> None:
     with pytest.raises(SettingsError, match=r"a horizon of 1e[+]09 s is too long: give 3600 s at most"):
         predict(model, [[0.0, 1.0, 0.0]], horizon=1e9)
+
+
+def test_a_side_that_was_never_driven_is_warned_of() -> None:
+    one_sided = make_model(replace(named("edd-2"), speed=(0.0, 1.0), yaw_rate=(0.0, 1.0)))
+    with pytest.warns(UserWarning, match="yaw rate of -0.500 rad/s is far beyond the 0 rad/s"):
+        predict(one_sided, [(0.0, 0.5, -0.5)], horizon=1.0)
+    with pytest.warns(UserWarning, match="speed of -0.500 m/s is far beyond the 0 m/s"):
+        predict(one_sided, [(0.0, -0.5, 0.5)], horizon=1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        predict(one_sided, [(0.0, 1.0, -0.1), (0.5, -0.1, 1.0)], horizon=1.0)
 
 
 def test_speeds_of_no_robot_are_refused(model: Model) -> None:

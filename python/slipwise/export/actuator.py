@@ -11,6 +11,8 @@ from slipwise.errors import ModelError
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.models.model import Model
 
+AT_ONCE = 0.05  # s, standard deviation up to which a delay of nothing is known
+
 _KNOWN = {
     f"{name}_{place}"
     for name in ("log_time_constant", "log_delay", "delay", "gain", "slow_fraction", "log_slow_time_constant")
@@ -55,6 +57,12 @@ class ChannelResponse:
         """
         late = self.delay + self.mean_lag
         return late if late.value > 0.0 else late * 0.0
+
+    def delay_objection(self, numbers: LearnedNumbers) -> str:
+        """Say why it must not be handed on that the channel is not late; empty where it is, or may be."""
+        late = self.delay + self.mean_lag
+        unknown = late.value <= 0.0 and numbers.std(late) > AT_ONCE
+        return f"{numbers.text(late)} s of delay is too uncertain" if unknown else ""
 
 
 @dataclass(frozen=True, eq=False)

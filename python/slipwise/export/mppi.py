@@ -101,8 +101,9 @@ def _delays(actuator: Actuator, numbers: LearnedNumbers, horizon: float) -> list
 
 def _delay(name: str, channel: ChannelResponse, numbers: LearnedNumbers, horizon: float) -> Entry | Kept:
     late = channel.mean_delay
-    if channel.objection:
-        return Kept((name,), channel.objection)
+    why = channel.objection or channel.delay_objection(numbers)
+    if why:
+        return Kept((name,), why)
     if late.value > LONGEST_DELAY * horizon:
         return Kept(
             (name,),

@@ -112,7 +112,9 @@ class _Axis:
 def _axis(channel: ChannelResponse, numbers: LearnedNumbers) -> _Axis:
     """Return the gain 1/lag, by which the filter multiplies the missing speed."""
     lag = channel.mean_lag
-    why = channel.objection or numbers.objection(lag)
+    why = channel.objection or numbers.objection(lag) or channel.delay_objection(numbers)
+    if not why and lag.value == 0.0:  # the model has none: how late the robot is must be known at least
+        why = numbers.objection(channel.mean_delay)
     if why:
         return _Axis(0.0, why)
     quick = lag.value * FREQUENCY <= 1.0

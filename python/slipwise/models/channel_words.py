@@ -9,6 +9,7 @@ from math import hypot
 
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, known
+from slipwise.models.slip_words import LEARNED
 from slipwise.models.step_response import SOON, StepResponse, step_responses
 from slipwise.number_text import estimate_text
 
@@ -95,7 +96,7 @@ def _arrives(channels: Channels, found: Found, responses: Mapping[str, StepRespo
     parts = [
         f"{estimate_text(100.0 * soon[0], 100.0 * soon[1])} % of the {name} command"
         for place, name in channels.items()
-        if _may_be_slow(found, place) and known(*(soon := responses[place].soon))
+        if _may_be_slow(found, place) and known(*(soon := responses[place].soon)) and soon[1] <= LEARNED
     ]
     verb = "has" if len(parts) == 1 else "have"
     return [f"{SOON:g} s after a step, {' and '.join(parts)} {verb} arrived."] if parts else []

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from slipwise.models.model import Model
 from slipwise.number_text import number_text
 
+SIDE = 0.2  # of the largest speed: up to there, a side that was never driven is as good as rest
 FAR = 2.0  # times the largest speed of the log: beyond it, terms such as V^2 reach where no data were
 
 
 def warn_of_unseen_speeds(model: Model, commands: NDArray[Any], *, stacklevel: int) -> None:
-    """Warn where inputs exceed `FAR` times the range of the model; throttle and steering have no speeds.
+    """Warn where inputs exceed `FAR` times the range of the model, to either side; a throttle has no speed.
 
     Args:
         model: a learned model.
@@ -29,13 +30,15 @@ def warn_of_unseen_speeds(model: Model, commands: NDArray[Any], *, stacklevel: i
         ("speed", commands[..., 0], span.speed, "m/s"),
         ("yaw rate", commands[..., -1], span.yaw_rate, "rad/s"),
     ):
-        if not values.size:
+        largest = max(abs(end) for end in seen)
+        if not values.size or not largest > 0.0:
             continue
-        most, known = max(float(values.max()), -float(values.min())), max(abs(end) for end in seen)
-        if most > FAR * known > 0.0:
-            warnings.warn(
-                f"a {name} of {number_text(most)} {unit} is far beyond the {number_text(known)} {unit} that "
-                "the model has seen: the prediction is a guess there. Calibrate from a faster drive.",
-                UserWarning,
-                stacklevel=stacklevel + 1,
-            )
+        for side, most, end in ((1.0, float(values.max()), seen[1]), (-1.0, float(values.min()), seen[0])):
+            if side * most > max(FAR * side * end, SIDE * largest):
+                warnings.warn(
+                    f"a {name} of {number_text(most)} {unit} is far beyond the {number_text(end)} {unit} "
+                    "that the model has seen: the prediction is a guess there. Calibrate from a drive that "
+                    "has such.",
+                    UserWarning,
+                    stacklevel=stacklevel + 1,
+                )

@@ -16,6 +16,7 @@ from slipwise.number_text import estimate_text
 _FAR = 0.05  # [m] nearer to the centre of turning, a sensor hardly matters
 _TURNED = 0.05  # [rad] the same of its heading
 _SIGNIFICANT = 3.0  # standard deviations
+_APART = 0.1  # least singular value over the largest: below it, speeds and turns came together
 _TERMS = ("lat.w", "lon.w", "lat.V")  # that x, y and yaw look like
 _PLACES = ((0, "ahead of", "behind"), (1, "left of", "right of"))
 
@@ -38,18 +39,21 @@ def sensor_look(model: Model) -> SensorLook:
     """Return the place of a sensor, on a robot that turns about its origin, that would look like the slip.
 
     A robot that drives v and turns w moves such a sensor at R(-yaw) (v - w y, w x). The slip is taken as
-    straight lines through v and w over the range of the log.
+    straight lines through v and w over the range of the log; what is not straight in it counts as an error
+    of both. Nothing is known where speeds and turns came together, as on a circle.
     """
     body = body_twists(model)
     yaw_gain = straight_line(body.w[:, None], body.mean[:, 2], body.features[:, 2])[0][0]
     ahead, left = (_along(body, axis) for axis in (0, 1))  # [v, w]
-    if not (yaw_gain > 0.0 and ahead[0][0] > 0.0):
+    if not (yaw_gain > 0.0 and ahead[0][0] > 0.0 and _told_apart(body)):
         return SensorLook((math.nan,) * 3, (math.nan,) * 3)
+    bent = [_bent(body, axis, line[0]) for axis, line in ((0, ahead), (1, left))]  # m/s
     covariance = model.covariance[: model.motion.slip_size, : model.motion.slip_size]
     gains = np.array([ahead[0], left[0]])  # [2 axes, (v, w)]
     by_slip = np.array([ahead[1], left[1]])  # [2, 2, slip parameters]
     yaw = -math.atan2(gains[1, 0], gains[0, 0])
-    yaw_std = _std(by_slip[1, 0] / gains[0, 0], covariance)
+    by_v, by_w = (1.0 / max(_size(each), 1e-9) for each in (body.v, body.w))
+    yaw_std = math.hypot(_std(by_slip[1, 0], covariance), bent[1] * by_v) / gains[0, 0]
     clear = abs(yaw) > max(_TURNED, _SIGNIFICANT * yaw_std)
     turn = yaw if clear else 0.0
     rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
@@ -57,7 +61,11 @@ def sensor_look(model: Model) -> SensorLook:
     by_arm = rotation @ by_slip[:, 1] / yaw_gain
     return SensorLook(
         (float(arm[1]), float(-arm[0]), yaw),
-        (_std(by_arm[1], covariance), _std(by_arm[0], covariance), yaw_std),
+        (
+            math.hypot(_std(by_arm[1], covariance), bent[1] * by_w / yaw_gain),
+            math.hypot(_std(by_arm[0], covariance), bent[0] * by_w / yaw_gain),
+            yaw_std,
+        ),
     )
 
 
@@ -94,6 +102,24 @@ def sensor_sentences(model: Model) -> list[str]:
 
 def _along(body: BodyTwists, axis: int) -> tuple[np.ndarray, np.ndarray]:
     return straight_line(np.column_stack((body.v, body.w)), body.mean[:, axis], body.features[:, axis])
+
+
+def _told_apart(body: BodyTwists) -> bool:
+    """Whether the log has turns without the speed that goes with them, and the other way."""
+    sizes = np.array([_size(body.v), _size(body.w)])
+    if not (sizes > 0.0).all():
+        return True  # it has one of them alone, and the line through the other is 0
+    least = np.linalg.svd(np.column_stack((body.v, body.w)) / sizes, compute_uv=False)
+    return bool(least[1] > _APART * least[0])
+
+
+def _bent(body: BodyTwists, axis: int, line: np.ndarray) -> float:
+    """Return what a straight line through v and w leaves [m/s]."""
+    return _size(body.mean[:, axis] - np.column_stack((body.v, body.w)) @ line)
+
+
+def _size(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def _std(derivative: np.ndarray, covariance: np.ndarray) -> float:

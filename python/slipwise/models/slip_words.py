@@ -13,6 +13,7 @@ from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, known
 from slipwise.number_text import estimate_text
 
+LEARNED = 0.1  # standard deviation up to which a gain of the actuator is learned; that of its prior is 0.2
 AS_COMMANDED = 0.02  # a gain of the actuator that is known to be so close to one is not worth a sentence
 
 
@@ -109,6 +110,6 @@ def _actuator_gains(model: Model, parameters: tuple[PhysicalParameter, ...]) -> 
 
 def _reaches(actuator: dict[str, Gain]) -> list[str]:
     parts = [
-        f"{gain.percent()} of the commanded {name}" for name, gain in actuator.items() if gain.identified
+        f"{gain.percent()} of the commanded {name}" for name, gain in actuator.items() if gain.std <= LEARNED
     ]
     return [f"Its wheels reach {' and '.join(parts)}."] if parts else []

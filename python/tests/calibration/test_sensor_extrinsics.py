@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from sample_logs import Drive, poses_of, simulated_log
+from sample_models import Made, make_model, named
 
 from slipwise import _core
 from slipwise.calibration import Calibration, calibrate, make_settings
@@ -127,3 +128,13 @@ def test_slip_that_looks_like_a_sensor_names_its_place(log: Log, source: str) ->
 def test_a_sensor_at_the_centre_of_turning_is_not_spoken_of() -> None:
     log = seen_by_sensor(simulated_log(DRIVE), (0.02, 0.01, 0.01))
     assert not sensor_sentences(calibrated(log, {}, basis="full-linear-6").model)
+
+
+def test_slip_that_is_bent_or_told_on_one_circle_alone_is_no_place_of_a_sensor() -> None:
+    """Side slip by V*w is the arm of no sensor; on one circle, an arm is like any slip."""
+    bent = make_model(Made(_core.Basis("bent", [], ["V*w", "w"], []), {"lat.V*w": 0.3}))
+    assert not sensor_sentences(bent)
+    arm = replace(named("full-linear-6", lat__w=0.3), std=0.001)
+    (sentence,) = sensor_sentences(make_model(arm))
+    assert "m ahead of the centre of turning" in sentence
+    assert not sensor_sentences(make_model(replace(arm, speed=(0.5, 0.5), yaw_rate=(0.3, 0.3))))

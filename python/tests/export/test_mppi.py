@@ -37,6 +37,14 @@ def written(made: Made, options: ExportOptions | None = None) -> dict[str, Any]:
     return parameters
 
 
+def test_a_delay_that_is_not_known_is_not_handed_on_as_none() -> None:
+    unknown = make_model(Made(_core.named_basis("edd-2"), delays=(-6e-16, 0.2), std=0.2))
+    made = export_model(unknown, "mppi", name="model.yaml", options=NEW)
+    assert "too uncertain" in made.kept["FollowPath.model_delay_vx"]
+    filtered = export_model(unknown, "robot-localization", name="model.yaml", options=NEW)
+    assert not any("acceleration_gains" in name for name in filtered.values)
+
+
 def test_delays_are_delay_plus_lag() -> None:
     parameters = written(LATE)
     assert parameters["model_delay_vx"] == pytest.approx(0.1 + 0.3)
