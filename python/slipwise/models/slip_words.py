@@ -13,7 +13,7 @@ from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, known
 from slipwise.number_text import estimate_text
 
-LEARNED = 0.1  # standard deviation up to which a gain of the actuator is learned; that of its prior is 0.2
+LEARNED = 0.15  # standard deviation up to which a gain of the actuator is learned; that of its prior is 0.2
 AS_COMMANDED = 0.02  # a gain of the actuator that is known to be so close to one is not worth a sentence
 
 
