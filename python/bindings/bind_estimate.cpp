@@ -256,6 +256,7 @@ void bind_slip_disturbance(nb::module_& m) {
       .def_rw("time_constants", &DisturbanceSettings::time_constants)
       .def_rw("white", &DisturbanceSettings::white)
       .def_rw("weighting", &DisturbanceSettings::weighting);
+  m.attr("UNIDENTIFIABLE_RATIO") = kUnidentifiableRatio;
   nb::class_<MotionPosterior>(m, "MotionPosterior", "The posterior of a motion model at one time.")
       .def(
           "__init__",

@@ -126,7 +126,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         horizon: how far to predict [s]; poses are returned every `PERIOD` and at the horizon.
         start: when the prediction starts [s], by the clock of the inputs; by default at the first command.
             The robot is at the start of the path then. A pose that was stamped at that moment may be older:
-            its sensor's learned `clock_offset` says how much, and has no part in the path.
+            its sensor's learned `clock_offset` says how much, and has no part in the path. Odometry of a
+            learner is the pose at its stamp.
         initial: the drive's measured (v [m/s], omega [rad/s]), or (v, vy, omega), at the start, of which a
             car commanded by throttle and steering takes the speed; by default it follows from the commands,
             before the first of which the robot is at rest.

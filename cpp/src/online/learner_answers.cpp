@@ -228,6 +228,7 @@ MotionNow MotionLearner::motion_now() {
           .newest = stream_.newest(),
           .latency = settings_.stream.latency,
           .learned = seconds_,
+          .late = pose_lateness(*known_.at(stream_.newest() - kReady).motion, stream_.wheel_interval()),
           .at = at,
           .leg = leg};
 }

@@ -39,6 +39,13 @@ Eigen::Matrix3d unknown_motion(const InputBuffer& inputs, double start, double e
   return Eigen::Vector3d(speed * speed * square, speed * speed * square, rate * rate * square).asDiagonal();
 }
 
+/// Covariance of a pose in its frame's axes by a time that is known to `std` [s], where it moves by `rates` in its own.
+Eigen::Matrix3d of_time(const Pose2& pose, const Eigen::Vector3d& rates, double std) {
+  Eigen::Vector3d moved = std * rates;
+  moved.head<2>() = (rotation(pose.theta) * moved.head<2>()).eval();
+  return moved * moved.transpose();
+}
+
 }  // namespace
 
 Localizer::Localizer(const PoseFilterSettings& settings)
@@ -55,26 +62,30 @@ void Localizer::push(const MeasuredPose& pose) {
 }
 
 std::optional<Odometry> Localizer::odometry(const MotionNow& motion) {
+  const double late = motion.late.mean;
   const auto legs = [&](double start, double end) {
-    MotionLeg found = motion.leg(motion.at(end, kOfPoses), start, end);
-    found.white += unknown_motion(motion.inputs, start, end);
+    MotionLeg found = motion.leg(motion.at(std::min(end, motion.newest), kOfPoses), start, end);
+    found.white += unknown_motion(motion.inputs, start - late, end - late);
     return found;
   };
-  const std::optional<SensorPose> sensor = filter_.at(motion.newest, legs);
+  const double now = motion.newest + late;
+  const std::optional<SensorPose> sensor = filter_.at(now, legs);
   if (!sensor) {
     return std::nullopt;
   }
-  const MotionLeg instant = legs(motion.newest - kInstant, motion.newest);
+  const MotionLeg instant = legs(now - kInstant, now);
   const Pose2 base = compose(sensor->pose, inverse(instant.sensor));
   const Eigen::Matrix3d at_base = transition(sensor->pose, base);
   const Eigen::Matrix3d of_sensor = adjoint(instant.sensor);
-  const Eigen::Vector3d twist = of_sensor * log(instant.motion) / kInstant;
+  const Eigen::Vector3d rates = log(instant.motion) / kInstant;
+  const Eigen::Matrix3d covariance = sensor->covariance + of_time(sensor->pose, rates, motion.late.std);
+  const Eigen::Vector3d twist = of_sensor * rates;
   const Eigen::Matrix3d lasting = (instant.covariance() - instant.white) / (kInstant * kInstant);
   const Eigen::Matrix3d twist_covariance = lasting + instant.white / (kInstant * kTwistTime);
   return Odometry{.t = motion.newest,
                   .frame = sensor->frame,
                   .pose = base,
-                  .covariance = at_base * sensor->covariance * at_base.transpose(),
+                  .covariance = at_base * covariance * at_base.transpose(),
                   .twist = {.v = twist.x(), .vy = twist.y(), .omega = twist.z()},
                   .twist_covariance = of_sensor * twist_covariance * of_sensor.transpose(),
                   .since_pose = sensor->since_pose};

@@ -1,26 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// The least standard deviation of a clock offset.
+// The least standard deviation of a clock offset, and what it says of the poses.
 #include "slipwise/online/stamp_spacing.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <string>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "slipwise/motion/parameter_block.hpp"
 
 namespace slipwise {
+namespace {
+
+/// Where the clock offset stands among the parameters, if it is learned.
+std::optional<Eigen::Index> place_of_offset(const MotionModel& model) {
+  const std::vector<ParameterInfo> names = model.parameters();
+  const auto found = std::ranges::find(names, "clock_offset", &ParameterInfo::name);
+  return found == names.end() ? std::nullopt : std::optional<Eigen::Index>(found - names.begin());
+}
+
+}  // namespace
 
 std::shared_ptr<const MotionPosterior> supported(std::shared_ptr<const MotionPosterior> posterior, double seconds,
                                                  std::size_t segments) {
-  if (posterior == nullptr || !posterior->model.learned().clock_offset || segments == 0) {
+  const auto found = posterior == nullptr || segments == 0 ? std::nullopt : place_of_offset(posterior->model);
+  if (!found) {
     return posterior;
   }
-  const std::vector<ParameterInfo> names = posterior->model.parameters();
-  Eigen::Index place = 0;
-  while (names[static_cast<std::size_t>(place)].name != "clock_offset") {
-    ++place;
-  }
+  const Eigen::Index place = *found;
   const double least = seconds / std::sqrt(12.0 * static_cast<double>(segments));
   const double std = std::sqrt(posterior->estimate.covariance(place, place));
   if (!(std > 0.0) || !(std < least)) {
@@ -32,6 +40,17 @@ std::shared_ptr<const MotionPosterior> supported(std::shared_ptr<const MotionPos
   wider.estimate.covariance.col(place) *= factor;
   wider.variance_ratio[place] *= factor * factor;
   return std::make_shared<const MotionPosterior>(std::move(wider));
+}
+
+PoseLateness pose_lateness(const MotionPosterior& posterior, double seconds) {
+  const std::optional<Eigen::Index> place = place_of_offset(posterior.model);
+  if (!place || posterior.variance_ratio.size() == 0 || !(posterior.variance_ratio[*place] <= kUnidentifiableRatio)) {
+    return {};
+  }
+  const double spacing = std::isfinite(seconds) ? seconds : 0.0;
+  const double mean = posterior.estimate.mean[*place] + spacing / 2.0;
+  const double variance = posterior.estimate.covariance(*place, *place) + spacing * spacing / 12.0;
+  return mean > 0.0 ? PoseLateness{.mean = mean, .std = std::sqrt(variance)} : PoseLateness{};
 }
 
 }  // namespace slipwise

@@ -87,6 +87,18 @@ TEST_CASE("the filter is as exact as it says, and more exact than the poses, whe
   }
 }
 
+TEST_CASE("odometry is at its stamp however late poses are stamped, once wheel speeds tell it") {
+  const Figures found =
+      figures_of({.seconds = 60.0, .wheels = true, .pose_xy = 0.02, .pose_yaw = 0.01, .late = 0.2}, 4);
+  MESSAGE("stamped 0.2 s late: NEES " << found.nees << ", position " << found.position << " m, heading "
+                                      << found.heading << " rad, raw poses " << found.raw_position << " m");
+  CHECK(found.raw_position > 0.1);
+  CHECK(found.nees > 0.5);
+  CHECK(found.nees < 4.5);
+  CHECK(found.position < 0.03);
+  CHECK(found.heading < 0.015);
+}
+
 TEST_CASE("the filter does not claim too much where errors of poses last, and is no worse than the poses") {
   for (const double correlation : {0.5, 5.0}) {
     CAPTURE(correlation);

@@ -45,4 +45,23 @@ TEST_CASE("an offset that is less sure, or not learned, stays") {
   CHECK(supported(nullptr, 0.1, 300) == nullptr);
 }
 
+TEST_CASE("poses are late by the offset and half the spacing of the wheel speeds that it was learned from") {
+  const auto offset = with_offset_std(0.003);
+  const PoseLateness late = pose_lateness(*offset, 0.05);
+  CHECK(late.mean == doctest::Approx(0.045));
+  CHECK(late.std == doctest::Approx(std::hypot(0.003, 0.05 / std::sqrt(12.0))));
+}
+
+TEST_CASE("where the offset is not identified, or the poses come first, they are not late") {
+  MotionPosterior posterior = *with_offset_std(0.003);
+  posterior.variance_ratio[2] = 0.6;
+  CHECK(pose_lateness(posterior, 0.05).mean == 0.0);
+  posterior.variance_ratio[2] = 0.1;
+  posterior.estimate.mean[2] = -0.2;
+  CHECK(pose_lateness(posterior, 0.05).mean == 0.0);
+  CHECK(pose_lateness(posterior, 0.05).std == 0.0);
+  posterior.model = MotionModel(named_basis("edd-2"), {.delays = true});
+  CHECK(pose_lateness(posterior, 0.05).mean == 0.0);
+}
+
 }  // namespace slipwise

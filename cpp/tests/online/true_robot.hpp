@@ -32,6 +32,7 @@ struct TrueDrive {
   double correlation = 0.0;  ///< time constant of the poses' errors [s]; without one they are white
   double slip_std = 0.01;    ///< of white slip, as sqrt of its density [m/sqrt(s), rad/sqrt(s)]
   Span gap = {};             ///< without poses
+  double late = 0.0;         ///< poses are stamped so much later than they were measured [s]
   Span blocked = {};         ///< the robot does not move whatever its wheels do
 };
 
@@ -92,7 +93,7 @@ inline TrueRobot true_robot(const TrueDrive& drive) {
     if (i % 5 == 0) {
       const Eigen::Vector3d seen = pose.vector() + errors.next(5 * kStep);
       if (!drive.gap.holds(t)) {
-        robot.run.poses.push_back({.t = t, .x = seen.x(), .y = seen.y(), .yaw = wrap_angle(seen.z())});
+        robot.run.poses.push_back({.t = t + drive.late, .x = seen.x(), .y = seen.y(), .yaw = wrap_angle(seen.z())});
       }
     }
     const BodyTwist acts = i >= kDelay ? commands[static_cast<std::size_t>(i - kDelay)] : BodyTwist{};

@@ -22,7 +22,7 @@ class Odometry:
     covariance: Floats  # [3, 3] of the pose, in the axes of the frame
     twist: Floats  # [3] v, vy [m/s], omega [rad/s] of base_link, slip included
     twist_covariance: Floats  # [3, 3]
-    since_pose: float  # s since the last pose that was used
+    since_pose: float  # s since the last pose that was used was measured
     frame: int  # of that pose
 
 

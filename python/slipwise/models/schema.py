@@ -7,12 +7,14 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
+from slipwise import _core
 from slipwise.models.inputs import InputName
 from slipwise.student import LEAST_DOF, MOST_DOF
 
 SCHEMA_VERSION = 5
 
-UNIDENTIFIABLE_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not identifiable
+# posterior / prior variance above which a parameter counts as not identifiable
+UNIDENTIFIABLE_RATIO: float = _core.UNIDENTIFIABLE_RATIO
 LONGEST_NAME = 80  # characters of the name of a surface
 LARGEST = 1e30  # of any number; nothing about a ground robot is larger in SI units
 

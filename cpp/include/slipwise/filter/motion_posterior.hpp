@@ -23,6 +23,9 @@ enum class Structure : std::uint8_t {
 inline constexpr std::size_t kStructures = 5;
 constexpr std::size_t enumerators(Structure /*type*/) { return kStructures; }
 
+/// Posterior over prior variance, above which a parameter counts as not identifiable.
+inline constexpr double kUnidentifiableRatio = 0.5;
+
 struct MotionPosterior {
   MotionModel model;
   Estimate estimate;

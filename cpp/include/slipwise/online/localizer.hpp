@@ -11,6 +11,7 @@
 #include "slipwise/online/motion_leg.hpp"
 #include "slipwise/online/motion_monitor.hpp"
 #include "slipwise/online/pose_filter.hpp"
+#include "slipwise/online/stamp_spacing.hpp"
 
 namespace slipwise {
 
@@ -22,7 +23,7 @@ struct Odometry {
   Eigen::Matrix3d covariance;        ///< of (x, y, yaw) [m, m, rad] in the axes of that frame
   BodyTwist twist;                   ///< of base_link in its own axes, slip included
   Eigen::Matrix3d twist_covariance;  ///< of (v, vy, omega) [m/s, m/s, rad/s]
-  double since_pose;                 ///< [s] since the last pose that was used
+  double since_pose;                 ///< [s] since the last pose that was used was measured
 };
 
 /// What is known of the motion now.
@@ -31,6 +32,7 @@ struct MotionNow {
   double newest;              ///< [s] stamp of the newest measurement
   double latency;             ///< [s] by which streams may be late relative to each other
   double learned;             ///< [s] of segments
+  PoseLateness late;          ///< of the poses: they, and legs, count by their own clock
   /// What predicts a leg at `t` [s], its errors as those over a `horizon` [s] were.
   std::function<LegKnowledge(double t, double horizon)> at;
   std::function<MotionLeg(const LegKnowledge& known, double start, double end)> leg;

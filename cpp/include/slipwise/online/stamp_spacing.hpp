@@ -9,10 +9,21 @@
 
 namespace slipwise {
 
+/// How much later poses are stamped than the robot was there, by the clock of the inputs [s].
+struct PoseLateness {
+  double mean = 0.0;
+  double std = 0.0;
+};
+
 /// The same with a clock offset no surer than stamps `seconds` apart support after `segments`. Between two samples it
 /// is not known when the wheels changed their speed: each change says when only to within the spacing, evenly spread.
 /// Residuals hide that where poses and wheels are of one source.
 std::shared_ptr<const MotionPosterior> supported(std::shared_ptr<const MotionPosterior> posterior, double seconds,
                                                  std::size_t segments);
+
+/// By the learned clock offset. Wheel speeds `seconds` apart are learned as held, half of that late, and where between
+/// two of them the wheels changed is not known. Nothing where the offset is not identified, or where the poses come
+/// first: nothing is stamped before it happens.
+PoseLateness pose_lateness(const MotionPosterior& posterior, double seconds);
 
 }  // namespace slipwise
