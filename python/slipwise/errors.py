@@ -45,5 +45,9 @@ class OutputError(SlipwiseError):
     """A result cannot be written."""
 
 
+class UnseenSpeed(UserWarning):
+    """A model is asked about speeds that it has not seen."""
+
+
 class OlderNames(FutureWarning):
     """A settings file has keys under names of an earlier release."""

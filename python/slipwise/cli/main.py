@@ -24,7 +24,7 @@ from slipwise.cli.help_pages import GroupedCommands
 from slipwise.cli.inspect import inspect
 from slipwise.cli.lattice import lattice
 from slipwise.cli.live import live
-from slipwise.cli.older_names import notes_of_older_names, with_new_names, with_ports
+from slipwise.cli.older_names import notes_of_warnings, with_new_names, with_ports
 from slipwise.cli.plan import plan
 from slipwise.cli.score import score
 from slipwise.cli.show import show
@@ -112,7 +112,7 @@ def run(arguments: Sequence[str]) -> int:
 def _invoke(arguments: list[str]) -> int:
     refuse_missing(COMMANDS, arguments[0])
     command = _command_line()
-    with notes_of_older_names(), command.make_context("slipwise", arguments) as context:
+    with notes_of_warnings(), command.make_context("slipwise", arguments) as context:
         return int(command.invoke(context) or 0)
 
 

@@ -10,7 +10,10 @@ import warnings
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from slipwise.errors import OlderNames
+from slipwise.errors import OlderNames, UnseenSpeed
+
+#: Warnings of slipwise, which are shown as notes.
+_OWN = (OlderNames, UnseenSpeed)
 
 #: Ports of `slipwise live`, where an option of a server comes without one.
 _PORTS = {"--web": "8088"}
@@ -100,15 +103,16 @@ def _translated(new: str, value: str | None, rest: Iterator[str]) -> list[str]:
 
 
 @contextlib.contextmanager
-def notes_of_older_names() -> Iterator[None]:
-    """Note older keys of settings files on stderr, one line each; other future warnings are of libraries."""
+def notes_of_warnings() -> Iterator[None]:
+    """Note warnings of slipwise on stderr, one line each; other future warnings are of libraries."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FutureWarning)
-        warnings.simplefilter("always", OlderNames)
+        for own in _OWN:
+            warnings.simplefilter("always", own)
         show, noted = warnings.showwarning, set[str]()
 
         def note(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
-            if category is OlderNames:
+            if issubclass(category, _OWN):
                 if str(message) not in noted:  # a file is read for the log and for learning
                     print(f"note: {message}", file=sys.stderr)
                 noted.add(str(message))

@@ -8,6 +8,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from slipwise.errors import UnseenSpeed
 from slipwise.models.model import Model
 from slipwise.number_text import number_text
 
@@ -39,6 +40,6 @@ def warn_of_unseen_speeds(model: Model, commands: NDArray[Any], *, stacklevel: i
                     f"a {name} of {number_text(most)} {unit} is far beyond the {number_text(end)} {unit} "
                     "that the model has seen: the prediction is a guess there. Calibrate from a drive that "
                     "has such.",
-                    UserWarning,
+                    UnseenSpeed,
                     stacklevel=stacklevel + 1,
                 )

@@ -7,7 +7,7 @@ import itertools
 import json
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -22,6 +22,7 @@ from slipwise.files import write_text_whole
 from slipwise.ground import Grade
 from slipwise.models.axes import refuse_sideways
 from slipwise.models.model import Model
+from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.planning.holdable import curvature_map
 from slipwise.planning.limits import Limits, limits_of
 
@@ -56,6 +57,7 @@ class Primitive:
     poses: Floats  # [N, 3] x, y [m], yaw [rad] about a grid step apart; the start is left out, as Nav2 does
     length: float  # m
     swing: float  # rad, from its heading at the start to that at the end
+    commands: Floats  # [K, 2] v [m/s], omega [rad/s], each held for the same time
 
 
 def heading_angles(count: int) -> Floats:
@@ -83,7 +85,8 @@ def lattice_primitives(
 
     They have the model's slip, on a `grade` that of each heading against the slope; poses are as seen from
     above. Lag, delay and limits of the drive are left out: they shift where a command acts, which is up to
-    the controller that follows the plan.
+    the controller that follows the plan. They warn where they drive as the model has never seen the robot
+    drive, such as to a side.
 
     Raises:
         SettingsError: an option makes no sense.
@@ -106,6 +109,7 @@ def lattice_primitives(
             where="lattice",
             advice="allow longer primitives, a lower speed or a coarser grid",
         )
+    warn_of_unseen_speeds(model, np.vstack([made.commands for made in found]), stacklevel=2)
     quarters = options.headings // apart
     turned = [_quarter_turned(made, k, options.headings) for k in range(quarters) for made in found]
     return sorted(turned, key=lambda made: (made.start, (made.end - made.start) % options.headings))
@@ -211,7 +215,8 @@ def _shortest(
             )
             placed = np.column_stack((turned, heading + path[:, 2]))
             placed[-1] = x, y, heading + swing
-            return Primitive(start, end, _thinned(placed, options.grid), length, swing)
+            commands = np.column_stack((plan.v, plan.omega))
+            return Primitive(start, end, _thinned(placed, options.grid), length, swing, commands)
     return None
 
 
@@ -245,7 +250,7 @@ def _quarter_turned(made: Primitive, quarters: int, headings: int) -> Primitive:
     shift = quarters * headings // 4
     poses = np.column_stack((x, y, yaw + quarters * math.pi / 2.0))
     start, end = ((place + shift) % headings for place in (made.start, made.end))
-    return Primitive(start, end, poses, made.length, made.swing)
+    return replace(made, start=start, end=end, poses=poses)
 
 
 def _entry(number: int, made: Primitive) -> dict[str, Any]:

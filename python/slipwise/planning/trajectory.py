@@ -13,6 +13,7 @@ from slipwise.errors import PlanningError, SettingsError
 from slipwise.ground import ElevationMap, Ground, Pose
 from slipwise.models.axes import Axes, axes_of
 from slipwise.models.model import Model
+from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.number_text import number_text
 from slipwise.planning.limits import AT_REST, DriveState, Limits, limits_of
 from slipwise.prediction import Path, predict
@@ -105,6 +106,7 @@ class Planner:
         ground: Ground | None = None,
     ) -> None:
         model.refuse_throttle("planned trajectories")
+        self._model = model
         self._axes = axes_of(model)
         self.limits = limits_of(model) if limits is None else limits
         self.ground = ground
@@ -120,7 +122,10 @@ class Planner:
     def try_to(
         self, goal: Pose, *, start: Pose = (0.0, 0.0, 0.0), state: DriveState = AT_REST
     ) -> Trajectory | None:
-        """Return a trajectory from `start` to `goal`, None where there is none; see `to`."""
+        """Return a trajectory from `start` to `goal`, None where there is none; see `to`.
+
+        It is for searches, and does not warn of speeds that the model has not seen.
+        """
         plan = self._plan(goal, start, state)
         if plan.status != _core.TrajectoryStatus.Reached:
             return None
@@ -129,6 +134,8 @@ class Planner:
 
     def to(self, goal: Pose, *, start: Pose = (0.0, 0.0, 0.0), state: DriveState = AT_REST) -> Trajectory:
         """Return a trajectory from `start` to `goal`, both (x [m], y [m], yaw [rad]) in one frame.
+
+        It warns where it drives as the model has never seen the robot drive, such as to a side.
 
         Raises:
             PlanningError: no manoeuvre within the limits ends at the goal.
@@ -143,6 +150,7 @@ class Planner:
         found = _trajectory(plan, start, self._axes)
         if isinstance(self.ground, ElevationMap):
             self.ground.check(found.poses)
+        warn_of_unseen_speeds(self._model, found.commands[:, 1:], stacklevel=2)
         return found
 
     def _plan(self, goal: Pose, start: Pose, state: DriveState) -> _core.Trajectory:

@@ -33,6 +33,15 @@ def test_lattice_writes_primitives_and_table(slipwise: Slipwise, arguments: list
     assert f"{len(content['primitives'])} primitives over 16 headings at 0.5 m/s" in result.out
 
 
+def test_a_side_that_was_never_driven_is_noted_once(slipwise: Slipwise, arguments: list[object]) -> None:
+    make_model(replace(SKIDDING, yaw_rate=(0.0, 1.0))).save("model.yaml")
+    result = slipwise(*arguments)
+    assert result.code == 0
+    assert result.err.startswith("note: a yaw rate of -")
+    assert "is far beyond the 0 rad/s that the model has seen" in result.err
+    assert result.err.count("note:") == 1
+
+
 def test_the_table_has_what_slip_leaves(slipwise: Slipwise, arguments: list[object]) -> None:
     result = slipwise(*arguments, "--json", "-")
     assert result.code == 0

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from planning.planning_samples import LIMITS, learned_model, sliding
-from sample_models import Made, make_model
+from sample_models import Made, make_model, named
 
 from slipwise import _core
-from slipwise.errors import PlanningError, SettingsError
+from slipwise.errors import PlanningError, SettingsError, UnseenSpeed
 from slipwise.ground import Grade
 from slipwise.planning import (
     LatticeOptions,
@@ -49,6 +49,12 @@ def test_the_map_of_held_curvatures_has_dead_band_and_tops() -> None:
     left = np.where(np.abs(turn) < 0.1, 0.0, np.clip(turn, -0.5, 0.5))
     assert held.held[known] == pytest.approx((left / np.minimum(speed, 0.8))[known])
     assert held.achieved_speed[known] == pytest.approx(np.minimum(speed, 0.8)[known])
+
+
+def test_a_lattice_to_a_side_that_was_never_driven_is_warned_of() -> None:
+    one_sided = make_model(replace(named("edd-2"), speed=(0.0, 1.0), yaw_rate=(0.0, 1.0)))
+    with pytest.warns(UnseenSpeed, match="yaw rate of -.* rad/s is far beyond the 0 rad/s"):
+        lattice_primitives(one_sided, options=replace(OPTIONS, turns=1), limits=LIMITS)
 
 
 def test_on_a_slope_each_heading_has_primitives_of_its_own_that_end_on_the_grid() -> None:

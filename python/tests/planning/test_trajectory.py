@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from sample_models import LIMITS as AXES
 from sample_models import Made, make_model, named
 
 from slipwise import _core
-from slipwise.errors import PlanningError, SettingsError
+from slipwise.errors import PlanningError, SettingsError, UnseenSpeed
 from slipwise.ground import ElevationMap, Grade
 from slipwise.models import Model
 from slipwise.planning import (
@@ -47,6 +48,15 @@ def test_a_trajectory_ends_at_the_goal_as_the_model_predicts(planner: Planner) -
         assert path.poses[-1] == pytest.approx(goal, abs=2e-3)
         assert plan.poses[-1] == pytest.approx(path.poses[-1], abs=1e-6)
         assert path.t[-1] == pytest.approx(plan.duration)
+
+
+def test_a_trajectory_to_a_side_that_was_never_driven_is_warned_of() -> None:
+    one_sided = make_model(replace(named("edd-2"), speed=(0.0, 1.0), yaw_rate=(0.0, 1.0)))
+    with pytest.warns(UnseenSpeed, match="yaw rate of -.* rad/s is far beyond the 0 rad/s"):
+        trajectory_to(one_sided, (2.0, -1.0, -1.0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        trajectory_to(one_sided, (2.0, 1.0, 1.0))
 
 
 def test_on_a_hillside_a_trajectory_ends_at_the_goal_as_the_model_predicts_there() -> None:
