@@ -10,6 +10,7 @@ from pathlib import Path
 from numpy.typing import ArrayLike
 
 from slipwise import _core, calibration, evaluation, prediction
+from slipwise.argument_types import check_arguments
 from slipwise.calibration import Settings
 from slipwise.calibration.both_inputs import calibrate_inputs
 from slipwise.evaluation import Evaluation, EvaluationOptions, ModelComparison, compare_models
@@ -67,6 +68,7 @@ def calibrate(  # noqa: PLR0913 - options, most of them short for a setting
         LogError: the log cannot be read, has no such input, no poses, or no window to learn from.
         SettingsError: the basis or the estimator is unknown.
     """
+    check_arguments(calibrate, locals())
     chosen, opened = (settings or Settings()).choosing(basis, estimator), _opened(log)
     learned = calibrate_inputs(opened, input=input, settings=chosen, smooth=smooth)
     parts = {field.name: getattr(learned, field.name) for field in fields(learned)}
@@ -97,6 +99,7 @@ def evaluate(  # noqa: PLR0913 - all but the log are options
         ModelError: the file is no model.
         SettingsError: a method, a basis or a horizon is wrong.
     """
+    check_arguments(evaluate, locals())
     options = options or EvaluationOptions()
     if model is not None:
         options = replace(options, model=_loaded(model))
@@ -118,6 +121,7 @@ def compare(old: ModelOrPath, new: ModelOrPath, log: LogOrPath) -> ModelComparis
         ModelError: a file is no model.
         SettingsError: the models were learned from different inputs.
     """
+    check_arguments(compare, locals())
     return compare_models(("old", _loaded(old)), ("new", _loaded(new)), _opened(log))
 
 
@@ -159,6 +163,7 @@ def predict(  # noqa: PLR0913 - all but the first two are options
         SettingsError: the horizon is not positive, the start lies before the first command, the commands are
             not such rows, or the path leaves the map of elevations.
     """
+    check_arguments(predict, locals())
     return prediction.predict(
         _loaded(model),
         commands,

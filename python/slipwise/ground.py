@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ Pose = tuple[float, float, float]  # x, y [m], yaw [rad]
 STEEPEST = math.radians(60.0)  # rad; no wheel holds on what is steeper
 
 
+@runtime_checkable
 class Ground(Protocol):
     """What a robot may stand on."""
 

@@ -12,6 +12,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, Field, ValidationError
 
 from slipwise import _core, plugins
+from slipwise.argument_types import check_arguments
 from slipwise.calibration.gone_keys import moved, notes_of_gone, without
 from slipwise.calibration.keys import changed_or_key, key, keys_of
 from slipwise.calibration.learning_tables import (
@@ -167,12 +168,14 @@ class Settings(Section):
         return _core.Basis("none", [], [], []) if name == "none" else _core.named_basis(name)
 
 
-def load_settings(path: Path, changes: Mapping[str, Any] | None = None) -> Settings:
+def load_settings(path: str | Path, changes: Mapping[str, Any] | None = None) -> Settings:
     """Read settings from a TOML file; `changes`, nested dictionaries, go before it.
 
     Raises:
         SettingsError: the file is missing, not TOML, or has an unknown key or a wrong value.
     """
+    check_arguments(load_settings, locals())
+    path = Path(path)
     try:
         content = tomllib.loads(read_whole(path, most=MAX_BYTES, error=SettingsError).decode("utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
@@ -204,6 +207,7 @@ def make_settings(content: dict[str, Any], *, where: str = "settings", saved: bo
     Raises:
         SettingsError: a key is unknown or a value is wrong.
     """
+    check_arguments(make_settings, locals())
     present, news = _with_new_keys(content)
     if not saved:
         _note(where, news)

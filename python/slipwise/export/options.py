@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from slipwise.argument_types import check_arguments
 from slipwise.errors import SettingsError
 
 #: What makes sense of each number; far outside of these it has another unit.
@@ -51,6 +52,7 @@ class ExportOptions:
     )  # the tool's parameters while the log was recorded
 
     def __post_init__(self) -> None:
+        check_arguments(ExportOptions, vars(self))
         for name, (least, most, unit) in _BOUNDS.items():
             value = getattr(self, name)
             if value is not None and not least <= value <= most:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from slipwise.argument_types import check_arguments
 from slipwise.errors import ModelError, SettingsError
 from slipwise.export.amcl import amcl
 from slipwise.export.autoware import autoware
@@ -120,6 +121,7 @@ def export_model(
         ModelError: the verdict is bad, or the model does not fit the target.
         SettingsError: there is no such target.
     """
+    check_arguments(export_model, locals())
     made = find_target(target)
     model = without_force(for_target(model, made))
     model.refuse_throttle("exported files")

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from slipwise.addresses import shown
+from slipwise.argument_types import check_arguments
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.command_timeout import with_ended_commands
 from slipwise.logs.corrections import scaled_inputs, turned_poses
@@ -42,6 +43,7 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS, **changes: Any) -
         LogError: a file is missing, damaged, of an unknown kind, or says something impossible.
         SettingsError: there is no such option, or its value makes no sense.
     """
+    check_arguments(open_log, locals())
     if changes:
         options = _changed(options, changes)
     if not paths:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from slipwise.argument_types import check_arguments
 from slipwise.errors import LogError, OutputError
 from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import LeftOut, Log
@@ -23,6 +24,7 @@ def save_log(log: Log, path: str | Path) -> tuple[LeftOut, ...]:
         OutputError: the ending is not one of these, or the file cannot be written.
         LogError: the log has neither poses nor turns of a gyro, or the format holds no such inputs or poses.
     """
+    check_arguments(save_log, locals())
     path = Path(path)
     if not any(len(run.poses) for run in log.runs) and not gyro_alone(log.runs):
         raise LogError(

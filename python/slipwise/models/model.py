@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from slipwise import _core
+from slipwise.argument_types import check_arguments
 from slipwise.errors import ModelError
 from slipwise.files import write_text_whole
 from slipwise.frames import data_frame
@@ -337,6 +338,7 @@ def load_model(path: str | Path, *, input: str | None = None) -> Model:
             of this input.
         SettingsError: there is no such input.
     """
+    check_arguments(load_model, locals())
     return _model_of(read_yaml(Path(path)), str(path)).of_input(input)
 
 

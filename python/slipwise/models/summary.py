@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from slipwise.argument_types import check_arguments
 from slipwise.models.channel_words import response_sentences
 from slipwise.models.limits import KINDS
 from slipwise.models.model import Model
@@ -37,6 +38,7 @@ class Summary:
 
 def summarise(model: Model) -> Summary:
     """Say what was learned: slip, response, limits, offsets, and how well it predicts."""
+    check_arguments(summarise, locals())
     parameters = physical_parameters(model)
     if model.content.verdict.contradictions:
         return Summary((_NO_SLIP,), parameters)

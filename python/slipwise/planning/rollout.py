@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from slipwise import _core
+from slipwise.argument_types import check_arguments
 from slipwise.errors import SettingsError
 from slipwise.models.axes import axes_of, drive_axes
 from slipwise.models.model import Model
@@ -97,6 +98,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         SettingsError: the batch is empty, a command is not finite, something does not fit the rest, or
             there is no such device; it says why.
     """
+    check_arguments(rollout, locals())
     model = model.body
     numbers = checked_commands(model, commands, dtype)
     check_threads(threads)

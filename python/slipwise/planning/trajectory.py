@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.argument_types import check_arguments
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.ground import ElevationMap, Ground, Pose
 from slipwise.models.axes import Axes, axes_of
@@ -16,7 +17,7 @@ from slipwise.models.model import Model
 from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.number_text import number_text
 from slipwise.planning.limits import AT_REST, DriveState, Limits, limits_of
-from slipwise.prediction import Path, predict
+from slipwise.prediction import PERIOD, Path, predict
 
 Floats = NDArray[np.float64]
 
@@ -105,9 +106,10 @@ class Planner:
         state: DriveState = AT_REST,
         ground: Ground | None = None,
     ) -> None:
+        check_arguments(Planner.__init__, locals())
         model.refuse_throttle("planned trajectories")
         self._model = model
-        self._axes = axes_of(model)
+        self._axes, self._options = axes_of(model), options
         self.limits = limits_of(model) if limits is None else limits
         self.ground = ground
         settings = options.to_core(self.limits)
@@ -126,6 +128,8 @@ class Planner:
 
         It is for searches, and does not warn of speeds that the model has not seen.
         """
+        if self._stays(goal, start, state):
+            return _staying(start, state, self._axes)
         plan = self._plan(goal, start, state)
         if plan.status != _core.TrajectoryStatus.Reached:
             return None
@@ -135,13 +139,16 @@ class Planner:
     def to(self, goal: Pose, *, start: Pose = (0.0, 0.0, 0.0), state: DriveState = AT_REST) -> Trajectory:
         """Return a trajectory from `start` to `goal`, both (x [m], y [m], yaw [rad]) in one frame.
 
-        It warns where it drives as the model has never seen the robot drive, such as to a side.
+        It warns where it drives as the model has never seen the robot drive, such as to a side. A robot that
+        rests at the goal already stays: a trajectory of one command and no length.
 
         Raises:
             PlanningError: no manoeuvre within the limits ends at the goal.
             SettingsError: a pose is not finite, the start is faster than the limits, or the path leaves the
                 map of elevations.
         """
+        if self._stays(goal, start, state):
+            return _staying(start, state, self._axes)
         plan = self._plan(goal, start, state)
         if plan.status != _core.TrajectoryStatus.Reached:
             what, _, advice = _core.trajectory_advice(plan.status).partition(": ")
@@ -152,6 +159,15 @@ class Planner:
             self.ground.check(found.poses)
         warn_of_unseen_speeds(self._model, found.commands[:, 1:], stacklevel=2)
         return found
+
+    def _stays(self, goal: Pose, start: Pose, state: DriveState) -> bool:
+        """Whether the robot rests at the goal already, within the tolerances, and is to end at rest."""
+        left, options = _core.between(to_core_pose(start, "start"), to_core_pose(goal, "goal")), self._options
+        near = np.hypot(left.x, left.y) <= options.tolerance_xy
+        turned = abs(_core.wrap_angle(left.theta)) <= options.tolerance_yaw
+        v, omega = np.abs((state.drive, state.commanded)).max(axis=0)
+        rests = v <= options.rest_speed and omega <= options.rest_yaw_rate
+        return bool(near and turned and rests and options.end_speed == 0.0)
 
     def _plan(self, goal: Pose, start: Pose, state: DriveState) -> _core.Trajectory:
         relative = _core.between(to_core_pose(start, "start"), to_core_pose(goal, "goal"))
@@ -189,14 +205,16 @@ def uncertain_path(
     ground: Ground | None = None,
     at: Pose = (0.0, 0.0, 0.0),
 ) -> Path:
-    """Return the path of a trajectory with its covariance, from the origin; see `predict`, also for `at`."""
+    """Return the path of a trajectory with its covariance, from the origin; see `predict`, also for `at`.
+
+    That of a robot that stays is predicted for a moment.
+    """
     axes = axes_of(model)
     before = np.array([[-LONG_AGO, *axes.ahead(state.commanded)]])
     commands = np.vstack((before, trajectory.commands))
     drive = tuple(axes.ahead(state.drive).tolist())
-    return predict(
-        model, commands, horizon=trajectory.duration, start=0.0, initial=drive, ground=ground, at=at
-    )
+    horizon = trajectory.duration or PERIOD
+    return predict(model, commands, horizon=horizon, start=0.0, initial=drive, ground=ground, at=at)
 
 
 def to_core_pose(pose: Pose, name: str) -> _core.Pose2:
@@ -205,7 +223,10 @@ def to_core_pose(pose: Pose, name: str) -> _core.Pose2:
     Raises:
         SettingsError: it is not three finite numbers.
     """
-    values = np.asarray(pose, dtype=np.float64)
+    try:
+        values = np.asarray(pose, dtype=np.float64)
+    except (TypeError, ValueError):
+        values = np.zeros(0)
     if values.shape != (3,) or not np.isfinite(values).all():
         raise SettingsError(
             f"the {name} is not a pose", where=str(pose), advice="give finite x, y [m], yaw [rad]"
@@ -224,6 +245,13 @@ def placed(poses: Floats, start: Pose) -> Floats:
     x = start[0] + cos * poses[:, 0] - sin * poses[:, 1]
     y = start[1] + sin * poses[:, 0] + cos * poses[:, 1]
     return np.column_stack((x, y, start[2] + poses[:, 2]))
+
+
+def _staying(start: Pose, state: DriveState, axes: Axes) -> Trajectory:
+    """Return the trajectory of a robot that stays where it is."""
+    still = np.hstack((0.0, axes.ahead((0.0, 0.0))))
+    at_end = replace(state, commanded=(0.0, 0.0))
+    return Trajectory(still[None], np.zeros(1), np.array([start], dtype=np.float64), at_end)
 
 
 def _trajectory(plan: _core.Trajectory, start: Pose, axes: Axes) -> Trajectory:

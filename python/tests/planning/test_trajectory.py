@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import warnings
 from dataclasses import replace
@@ -48,6 +49,19 @@ def test_a_trajectory_ends_at_the_goal_as_the_model_predicts(planner: Planner) -
         assert path.poses[-1] == pytest.approx(goal, abs=2e-3)
         assert plan.poses[-1] == pytest.approx(path.poses[-1], abs=1e-6)
         assert path.t[-1] == pytest.approx(plan.duration)
+
+
+def test_a_robot_that_rests_at_the_goal_stays() -> None:
+    here = (2.0, -1.0, 0.5)
+    for goal in (here, (2.0, -1.0, 0.5 + 2.0 * math.pi)):
+        plan = trajectory_to(learned_model(), goal, start=here, limits=LIMITS)
+        assert plan.duration == 0.0
+        assert plan.commands.tolist() == [[0.0, 0.0, 0.0]]
+        assert plan.poses.tolist() == [[*here]]
+        assert uncertain_path(learned_model(), plan).end == pytest.approx((0.0, 0.0, 0.0))
+    moving = DriveState(drive=(0.5, 0.0), commanded=(0.5, 0.0))
+    with contextlib.suppress(PlanningError):
+        assert trajectory_to(learned_model(), here, start=here, limits=LIMITS, state=moving).duration > 0.0
 
 
 def test_a_trajectory_to_a_side_that_was_never_driven_is_warned_of() -> None:
