@@ -55,8 +55,9 @@ def vehicle_numbers(model: Model) -> VehicleNumbers:
         gains = (1.0, 1.0) if actuator is None else (actuator.gain_v, actuator.gain_omega)
         pairs = (("drives", slip.speed, gains[0]), ("turns", slip.yaw_rate, gains[1]))
         found |= {name: gain.value * times for name, gain, times in pairs if gain.identified}
-        if slip.separation.identified and slip.separation.value > 0.0:
-            found["multiplier"] = slip.separation.value
+        multiplier = slip.separation
+        if multiplier is not None and multiplier.identified and multiplier.value > 0.0:
+            found["multiplier"] = multiplier.value
         if from_commands:
             speed, turn = (response.risen for response in step_responses(model))
             if model.car is not None:  # what is behind its curves is short

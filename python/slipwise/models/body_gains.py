@@ -18,9 +18,10 @@ _GRID = 21  # speeds, and as many yaw rates
 
 @dataclass(frozen=True)
 class BodyTwists:
-    """The drive's speed and yaw rate [N] and the body's twist (forward, left, yaw) then, once settled."""
+    """The drive's speeds and yaw rate [N] and the body's twist (forward, left, yaw) then, once settled."""
 
     v: Floats
+    vy: Floats  # to the left
     w: Floats
     mean: Floats  # [N, 3]
     features: Floats  # [N, 3, slip parameters], derivative of `mean`
@@ -31,6 +32,15 @@ def body_twists(model: Model) -> BodyTwists:
     span = model.content.range
     v, w = np.meshgrid(*(np.linspace(low, high, _GRID) for low, high in (span.speed, span.yaw_rate)))
     return _twists(model, v.ravel(), w.ravel())
+
+
+def sideways_twists(model: Model) -> BodyTwists | None:
+    """Return the body's twists while it drives to its sides alone; None where it has not."""
+    span = model.content.range.sideways
+    if span is None:
+        return None
+    vy = np.linspace(span[0], span[1], _GRID)
+    return _twists(model, np.zeros_like(vy), np.zeros_like(vy), vy)
 
 
 def turning_twists(model: Model, radius: float) -> BodyTwists:
@@ -51,11 +61,13 @@ def straight_line(inputs: Floats, output: Floats, features: Floats) -> tuple[Flo
     return solve @ output, solve @ features
 
 
-def _twists(model: Model, v: Floats, w: Floats) -> BodyTwists:
+def _twists(model: Model, v: Floats, w: Floats, vy: Floats | None = None) -> BodyTwists:
     basis = model.motion.basis
     channel = np.repeat(np.arange(3), (len(basis.lon), len(basis.lat), len(basis.ang)))
     features = np.zeros((len(v), 3, basis.size))
-    for i, (speed, rate) in enumerate(zip(v.tolist(), w.tolist(), strict=True)):
-        features[i, channel, np.arange(basis.size)] = basis.features(_core.SlipState(speed, rate, 0.0, 0.0))
-    mean = np.column_stack((v, np.zeros_like(v), w)) + features @ model.mean[: basis.size]
-    return BodyTwists(v, w, mean, features)
+    left = np.zeros_like(v) if vy is None else vy
+    drive = np.column_stack((v, left, w))
+    for i, (ahead, side, rate) in enumerate(drive.tolist()):
+        state = _core.SlipState(ahead, rate, 0.0, 0.0, side)
+        features[i, channel, np.arange(basis.size)] = basis.features(state)
+    return BodyTwists(v, left, w, drive + features @ model.mean[: basis.size], features)

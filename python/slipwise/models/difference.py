@@ -98,10 +98,15 @@ def _comparable(model: Model, first: Model, second: Model) -> tuple[PhysicalPara
     return parameters if same_terms(first, second) else parameters[model.motion.slip_size :]
 
 
-def _gains(model: Model) -> list[tuple[str, Gain]]:
+def _gains(model: Model) -> list[tuple[str, Gain | None]]:
     gains = slip_gains(model)
-    rows = [("speed gain", gains.speed), ("yaw-rate gain", gains.yaw_rate)]
-    return [*rows, ("separation multiplier", gains.separation)] if model.content.input == "wheel" else rows
+    separation = gains.separation if model.content.input == "wheel" else None
+    return [
+        ("speed gain", gains.speed),
+        ("sideways gain", gains.sideways),
+        ("yaw-rate gain", gains.yaw_rate),
+        ("separation multiplier", separation),
+    ]
 
 
 def _share_rows(first: Model, second: Model) -> list[Difference]:
@@ -128,8 +133,8 @@ def _curve_rows(first: Model, second: Model) -> list[Difference]:
     ]
 
 
-def _paired(first: tuple[str, Gain], second: tuple[str, Gain]) -> Difference:
-    one, other = ((g.value, g.std) if g.identified else None for _, g in (first, second))
+def _paired(first: tuple[str, Gain | None], second: tuple[str, Gain | None]) -> Difference:
+    one, other = ((g.value, g.std) if g is not None and g.identified else None for _, g in (first, second))
     return Difference(first[0], "-", one, other)
 
 

@@ -8,7 +8,7 @@ from math import hypot
 
 import numpy as np
 
-from slipwise.models.body_gains import body_twists, straight_line
+from slipwise.models.body_gains import body_twists, sideways_twists, straight_line
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, known
 from slipwise.number_text import estimate_text
@@ -41,11 +41,12 @@ class Gain:
 
 @dataclass(frozen=True)
 class SlipGains:
-    """Speed and yaw rate of the body over those of its wheels: straight lines over the range of the log."""
+    """Speeds and yaw rate of the body over those of its wheels: straight lines over the range of the log."""
 
     speed: Gain
+    sideways: Gain | None  # None of a base that does not drive to its sides
     yaw_rate: Gain
-    separation: Gain  # wheel-separation multiplier: the speed gain over that of the yaw rate
+    separation: Gain | None  # wheel-separation multiplier: the speed gain over that of the yaw rate
 
 
 def slip_gains(model: Model) -> SlipGains:
@@ -64,7 +65,11 @@ def slip_gains(model: Model) -> SlipGains:
     def gain(value: float, derivative: np.ndarray) -> Gain:
         return Gain(float(value), float(np.sqrt(max(derivative @ covariance @ derivative, 0.0))))
 
-    return SlipGains(gain(speed[0], by_speed[0]), gain(yaw[0], by_yaw[0]), gain(ratio, by_ratio))
+    gains = gain(speed[0], by_speed[0]), gain(yaw[0], by_yaw[0])
+    if (sides := sideways_twists(model)) is None:
+        return SlipGains(gains[0], None, gains[1], gain(ratio, by_ratio))
+    left, by_left = straight_line(sides.vy[:, None], sides.mean[:, 1], sides.features[:, 1])
+    return SlipGains(gains[0], gain(left[0], by_left[0]), gains[1], None)
 
 
 def slip_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> list[str]:
@@ -74,28 +79,28 @@ def slip_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> l
     slip, actuator = slip_gains(model), _actuator_gains(model, parameters)
     exact = all(abs(g.value - 1.0) <= AS_COMMANDED and g.std <= AS_COMMANDED for g in actuator.values())
     if model.content.input == "wheel":
-        return [_moves(slip.speed, slip.yaw_rate, "its wheels say", _separation(slip.separation))]
+        return [_moves(slip, "its wheels say", _separation(slip.separation))]
     if not exact:
-        return [_moves(slip.speed, slip.yaw_rate, "its wheels say"), *_reaches(actuator)]
-    speed, yaw_rate = map(Gain.times, (slip.speed, slip.yaw_rate), actuator.values())
-    return [_moves(speed, yaw_rate, "is commanded" if model.car is None else "its curves say")]
+        return [_moves(slip, "its wheels say"), *_reaches(actuator)]
+    of_speed, of_turn = actuator.values()
+    sideways = None if slip.sideways is None else slip.sideways.times(of_speed)
+    all_in_all = SlipGains(slip.speed.times(of_speed), sideways, slip.yaw_rate.times(of_turn), None)
+    return [_moves(all_in_all, "is commanded" if model.car is None else "its curves say")]
 
 
-def _moves(speed: Gain, yaw_rate: Gain, source: str, besides: str = "") -> str:
-    parts = []
-    if speed.identified:
-        parts.append(f"drives {speed.percent()}")
-    if yaw_rate.identified:
-        parts.append(f"turns {yaw_rate.percent()}")
+def _moves(gains: SlipGains, source: str, besides: str = "") -> str:
+    ways = (("drives", gains.speed), ("goes sideways", gains.sideways), ("turns", gains.yaw_rate))
+    parts = [f"{verb} {gain.percent()}" for verb, gain in ways if gain is not None and gain.identified]
     if not parts:
         return "The log does not identify how much the robot slips."
-    sentence = " and ".join(parts) + f" of what {source}{besides}."
+    said = " and ".join(filter(None, (", ".join(parts[:-1]), parts[-1])))
+    sentence = f"{said} of what {source}{besides}."
     return sentence[0].upper() + sentence[1:]
 
 
-def _separation(multiplier: Gain) -> str:
+def _separation(multiplier: Gain | None) -> str:
     """The multiplier that wheel odometry takes; commands do not tell it from what the drive makes of them."""
-    if not (multiplier.identified and multiplier.value > 0.0):
+    if multiplier is None or not (multiplier.identified and multiplier.value > 0.0):
         return ""
     return f" (separation multiplier {estimate_text(multiplier.value, multiplier.std)})"
 

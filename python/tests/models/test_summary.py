@@ -123,6 +123,19 @@ def test_wheels_alone_tell_a_separation_multiplier() -> None:
         assert "multiplier" not in str(summarise(make_model(replace(slip, **commanded))))
 
 
+def test_a_base_that_drives_sideways_says_how_far_and_has_no_separation_multiplier() -> None:
+    basis = _core.Basis("sides", ["V", "Vy"], ["V", "Vy"], ["w"])
+    slip = Made(basis, {"lon.V": -0.05, "lat.Vy": -0.2, "ang.w": -0.1}, std=0.002)
+    model = make_model(slip)
+    span = model.content.range.model_copy(update={"sideways": (-0.4, 0.5)})
+    text = str(summarise(Model(model.content.model_copy(update={"range": span}))))
+    assert (
+        "Drives 95.00 ± 0.20 %, goes sideways 80.0 ± 0.2 % and turns 90.00 ± 0.20 % of what its wheels say."
+        in text
+    )
+    assert "multiplier" not in text
+
+
 def test_limits_offsets_and_the_place_of_the_sensor_are_said() -> None:
     made = replace(
         named("edd-2"),
