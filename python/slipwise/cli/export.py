@@ -129,7 +129,7 @@ def export(
     from slipwise.cli.export_merge import merge_into
     from slipwise.cli.output import Output
     from slipwise.cli.writable import refuse_unwritable
-    from slipwise.export import ExportOptions
+    from slipwise.export import ExportOptions, find_target
     from slipwise.files import write_text_whole
     from slipwise.models import load_model, on_surface
 
@@ -156,6 +156,8 @@ def export(
     )
     no_target = merge is not None and px4 is None and ardupilot is None
     target = to or (TargetName.all if no_target else _of_firmware(px4, ardupilot))
+    if target is not TargetName.all:
+        find_target(target.value).refuse_others(options)
     learned = load_model(model, input=input_name)
     learned = learned if surface is None else on_surface(learned, surface)
     if not force:

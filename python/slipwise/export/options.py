@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 from slipwise.argument_types import check_arguments
 from slipwise.errors import SettingsError
@@ -64,3 +64,10 @@ class ExportOptions:
         for name, value in self.logged.items():
             if not math.isfinite(value):
                 raise SettingsError(f"{name} was {value}", where="--logged", advice="give a finite number")
+
+    def given(self) -> tuple[str, ...]:
+        """Return the names of what is not as it is by default; a shell has a release of ROS, which none gave."""
+        usual = ExportOptions(ros_distro=self.ros_distro)
+        return tuple(
+            each.name for each in fields(self) if getattr(self, each.name) != getattr(usual, each.name)
+        )

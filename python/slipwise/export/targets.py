@@ -44,6 +44,23 @@ class Target:
     make: Callable[[Model, ExportOptions, list[str]], Exported]
     sideways: bool = False  # whether the file can hold a sideways speed
     input: InputName | None = None  # that its numbers are of; None: of either
+    reads: frozenset[str] = frozenset()  # the options that its file depends on
+
+    def refuse_others(self, options: ExportOptions) -> None:
+        """Refuse options that say nothing about this file, which whoever gave them expects to find in it.
+
+        Raises:
+            SettingsError: there is one.
+        """
+        for name in options.given():
+            if name not in self.reads:
+                option = f"--{name.replace('_', '-')}"
+                readers = ", ".join(each.name for each in (*TARGETS, MOUNTS) if name in each.reads)
+                raise SettingsError(
+                    f"{self.name} takes no {option}",
+                    where=option,
+                    advice=f"it is for {readers}; leave it out",
+                )
 
 
 def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callable[..., Exported]:
@@ -77,18 +94,44 @@ def _mounts(model: Model, options: ExportOptions, origin: list[str]) -> Exported
     return Exported(mounts_text((found,), origin), values)
 
 
+_WHEELS = {"wheel_separation", "logged_separation_multiplier"}
+_FIRMWARE = frozenset({*_WHEELS, "limits", "logged", "min_turning_radius", "wheel_base"})
+_DIFF_DRIVE = frozenset(
+    {*_WHEELS, "logged_radius_multiplier", "horizon", "limits", "min_turning_radius", "update_rate"}
+)
+_MPPI = frozenset({"limits", "min_turning_radius", "planning_horizon"})
+
 TARGETS = (
-    Target("diff-drive", "diff_drive_controller.yaml", _parameters(diff_drive), input="wheel"),
-    Target("mppi", "nav2_mppi.yaml", _parameters(mppi), input="command"),
-    Target("amcl", "nav2_amcl.yaml", _parameters(amcl), input="wheel"),
-    Target("robot-localization", "robot_localization.yaml", _parameters(robot_localization)),
-    Target("autoware", "autoware.param.yaml", _parameters(autoware), input="wheel"),
-    Target("px4", "px4.params", _firmware(px4)),
-    Target("ardupilot", "ardupilot.param", _firmware(ardupilot)),
+    Target(
+        "diff-drive", "diff_drive_controller.yaml", _parameters(diff_drive), input="wheel", reads=_DIFF_DRIVE
+    ),
+    Target("mppi", "nav2_mppi.yaml", _parameters(mppi), input="command", reads=_MPPI),
+    Target(
+        "amcl",
+        "nav2_amcl.yaml",
+        _parameters(amcl),
+        input="wheel",
+        reads=frozenset({"horizon", "omni", "small_alphas"}),
+    ),
+    Target(
+        "robot-localization",
+        "robot_localization.yaml",
+        _parameters(robot_localization),
+        reads=frozenset({"horizon", "stamped_commands"}),
+    ),
+    Target(
+        "autoware",
+        "autoware.param.yaml",
+        _parameters(autoware),
+        input="wheel",
+        reads=frozenset({"wheel_base", "logged"}),
+    ),
+    Target("px4", "px4.params", _firmware(px4), reads=_FIRMWARE | {"px4"}),
+    Target("ardupilot", "ardupilot.param", _firmware(ardupilot), reads=_FIRMWARE | {"ardupilot"}),
     Target("c-header", "model.h", _c_header, sideways=True),
 )
 #: Of models whose slip looks like a mount, where the user says that it is one.
-MOUNTS = Target("mounts", "sensor_mounts.txt", _mounts, sideways=True)
+MOUNTS = Target("mounts", "sensor_mounts.txt", _mounts, sideways=True, reads=frozenset({"no_side_slip"}))
 
 
 def find_target(name: str) -> Target:

@@ -238,3 +238,18 @@ def test_show_says_both_inputs_or_either(slipwise: Slipwise, folder: Path) -> No
     assert "The same file answers from wheel speeds too" in shown.out
     assert "learned from wheels" in wheels.out
     assert "The same file" not in wheels.out
+
+
+def test_options_of_other_tools_are_refused_with_those_that_take_them(
+    slipwise: Slipwise, wheel: Path
+) -> None:
+    for target in ("c-header", "robot-localization"):
+        result = slipwise("export", wheel, "--to", target, "--limits", "-o", "out")
+        assert result.code == 2
+        assert (
+            f"{target} takes no --limits (--limits): it is for diff-drive, mppi, px4, ardupilot" in result.err
+        )
+        assert not Path("out").exists()
+    assert (
+        slipwise("export", wheel, "--to", "all", "--limits", "--ros-distro", "jazzy", "-o", "out").code == 0
+    )

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -114,6 +114,45 @@ def test_a_model_that_learned_where_its_pose_sensor_sits_is_exported_like_others
             if target.name != "c-header":
                 assert one.values == other.values
                 assert one.kept == other.kept
+
+
+GIVEN = ExportOptions(
+    horizon=3.0,
+    wheel_separation=0.5,
+    logged_separation_multiplier=1.2,
+    logged_radius_multiplier=1.1,
+    min_turning_radius=2.0,
+    update_rate=50.0,
+    planning_horizon=1.5,
+    limits=True,
+    stamped_commands=True,
+    omni=True,
+    small_alphas=True,
+    wheel_base=2.5,
+    no_side_slip=True,
+    px4="1.17",
+    ardupilot="4.6",
+    logged={"RO_YAW_RATE_CORR": 1.1},
+)
+
+
+def test_what_a_target_does_not_read_changes_nothing_of_its_file_and_is_refused(
+    subtests: pytest.Subtests,
+) -> None:
+    assert set(GIVEN.given()) == {each.name for each in fields(ExportOptions)} - {"ros_distro"}
+    for target in TARGETS:
+        with subtests.test(target=target):
+            model = make_model(fitting(target))
+            plain = export_model(model, target.name, name="m", options=VERSIONS).text
+            for name in set(GIVEN.given()) - target.reads:
+                one = {name: getattr(GIVEN, name)}
+                asked = replace(VERSIONS, **one)
+                assert export_model(model, target.name, name="m", options=asked).text == plain
+                with pytest.raises(
+                    SettingsError, match=rf"{target.name} takes no --{name.replace('_', '-')}"
+                ):
+                    target.refuse_others(ExportOptions(**one))
+            target.refuse_others(ExportOptions(ros_distro="jazzy"))
 
 
 def test_wheels_whose_sensor_was_learned_are_exported_to_autopilots() -> None:
