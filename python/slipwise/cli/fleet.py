@@ -90,7 +90,7 @@ def fleet(
     out.document(_document(count, findings, unusable, files) | {"set_aside": mended, "exit_code": code})
     for sentence in sentences:
         out.line(sentence)
-    for log, why in count.failed:
+    for log, why in (*count.failed, *count.copies):
         out.line(f"{log}: {why}")
     show_files(out, files | {"rows": output / "rows"})
     return code

@@ -66,7 +66,7 @@ class ExportOptions:
                 raise SettingsError(f"{name} was {value}", where="--logged", advice="give a finite number")
 
     def given(self) -> tuple[str, ...]:
-        """Return the names of what is not as it is by default; a shell has a release of ROS, which none gave."""
+        """Return the names of what is not as by default; the release of ROS may be that of the shell."""
         usual = ExportOptions(ros_distro=self.ros_distro)
         return tuple(
             each.name for each in fields(self) if getattr(self, each.name) != getattr(usual, each.name)

@@ -34,6 +34,7 @@ class Count:
     known: int  # from an earlier run
     unusable: int  # with a reason that is kept
     failed: tuple[tuple[str, str], ...]  # log and why; tried again by the next run
+    copies: tuple[tuple[str, str], ...]  # log, and what says that another one is the same
 
 
 def learn_fleet(
@@ -72,7 +73,7 @@ def learn_fleet(
                 left = len(logs) - done - work.known - len(work.unreadable)
                 each = (time.monotonic() - began) / max(done, 1)
                 progress(Progress(len(logs) - left, len(logs), each * left))
-    return Count(learned, work.known, unusable, (*failed, *work.unreadable))
+    return Count(learned, work.known, unusable, (*failed, *work.unreadable), tuple(work.copies))
 
 
 class _Work:
@@ -81,6 +82,8 @@ class _Work:
     def __init__(self, logs: Sequence[tuple[Path, str]], store: Store, settings: Path | None) -> None:
         self.known = 0
         self.unreadable: list[tuple[str, str]] = []
+        self.copies: list[tuple[str, str]] = []
+        self._came: dict[str, tuple[str, str]] = {}  # path and vehicle of the first log of each key
         self._logs, self._store, self._done = logs, store, set(store.keys())
         self._file = "" if settings is None else str(settings.absolute())
         self._hash = settings_hash(Settings() if settings is None else load_settings(settings))
@@ -100,6 +103,7 @@ class _Work:
                 self.unreadable.append((str(path), f"cannot read: {problem.strerror}"))
                 continue
             key = key_of(digest, self._hash)
+            self._note(key, str(path), vehicle)
             if key in self._done:
                 self.known += 1
                 continue
@@ -113,8 +117,16 @@ class _Work:
             return True
         if not rows.known or rows.tag != task.tag:
             self._store.add_address(url, rows.log_sha256, rows.tag)
+        self._note(rows.key, shown(url), task.vehicle)
         if rows.key in self._done:
             self.known += 1
             return False
         self._done.add(rows.key)
         return True
+
+    def _note(self, key: str, path: str, vehicle: str) -> None:
+        """Note that a log came, which may be one that came before."""
+        first, of = self._came.setdefault(key, (path, vehicle))
+        if first != path:
+            once = "" if of == vehicle else f", and counts once, not for both {of} and {vehicle}"
+            self.copies.append((path, f"the same log as {first}{once}"))

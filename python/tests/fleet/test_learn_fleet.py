@@ -48,8 +48,16 @@ def test_copy_of_a_log_is_the_same_log(tmp_path: Path) -> None:
     (found,) = logs(tmp_path, "a")
     copy = tmp_path / "copy.csv"
     copy.write_bytes(found[0].read_bytes())
-    count = learn_fleet([found, (copy, "two")], Store(tmp_path / "fleet"), Here())
+    store, said = (
+        Store(tmp_path / "fleet"),
+        f"the same log as {found[0]}, and counts once, not for both one and two",
+    )
+    count = learn_fleet([found, (copy, "two")], store, Here())
     assert (count.learned, count.known) == (1, 1)
+    assert count.copies == ((str(copy), said),)
+    again = learn_fleet([found, (copy, "one")], store, Here())
+    assert again.copies == ((str(copy), f"the same log as {found[0]}"),)
+    assert learn_fleet([found], store, Here()).copies == ()
 
 
 def test_log_that_fails_is_told_and_tried_again(tmp_path: Path) -> None:

@@ -82,6 +82,9 @@ def test_address_whose_server_tells_no_version_is_fetched_but_not_learned_again(
     urls = [f"{server.address}/red/a.csv?signed=1", f"{server.address}/blue/copy.csv"]
     first = _learned(tmp_path, *urls)[0]
     assert (first.unusable, first.known) == (1, 1)  # a copy is the same log
+    assert [why.partition(", ")[2] for _, why in first.copies] == [
+        "and counts once, not for both blue and red"
+    ]
     again = _learned(tmp_path, f"{server.address}/red/a.csv?signed=2")[0]
     assert (again.unusable, again.known) == (0, 1)
     assert server.asked[-1] == "/red/a.csv?signed=2"
