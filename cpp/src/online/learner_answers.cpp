@@ -224,11 +224,12 @@ MotionNow MotionLearner::motion_now() {
   const auto leg = [this](const LegKnowledge& known, double start, double end) {
     return motion_leg(known, stream_.stretch(start, end, leg_memory(*known.posterior)));
   };
+  const auto clock = known_.at(stream_.newest() - kReady).clock;
   return {.inputs = stream_.inputs(),
           .newest = stream_.newest(),
           .latency = settings_.stream.latency,
           .learned = seconds_,
-          .late = pose_lateness(*known_.at(stream_.newest() - kReady).motion, stream_.wheel_interval()),
+          .late = clock ? pose_lateness(*clock, stream_.wheel_interval()) : PoseLateness{},
           .at = at,
           .leg = leg};
 }

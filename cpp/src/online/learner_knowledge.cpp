@@ -26,12 +26,13 @@ MotionLearner& MotionLearner::operator=(MotionLearner&&) noexcept = default;
 MotionLearner::~MotionLearner() = default;
 
 Knowledge MotionLearner::now_known(double until) const {
-  const auto motion = hypotheses_.posterior();
+  const auto motion = hypotheses_.posterior();  // what predicts best may count the lateness of poses as a delay
   return {
       .until = until,
       .motion = motion,
       .slip = motion->structure == Structure::Baseline ? hypotheses_.slip_posterior() : motion,
       .disturbance = std::make_shared<const DisturbanceFilter>(disturbance_),
+      .clock = motion->model.learned().clock_offset ? motion : hypotheses_.of(Structure::Cascaded),
       .sources = settings_.stream.sources.empty() ? nullptr : std::make_shared<const SourceNoise>(sources_.noise())};
 }
 

@@ -53,6 +53,36 @@ def test_the_covariance_is_one_and_grows_without_poses_along_the_axes_of_the_fra
     assert np.all(np.diag(later.covariance) > np.diag(seen.covariance))
 
 
+@pytest.mark.slow
+def test_the_pose_is_at_its_stamp_where_late_poses_pass_for_a_delay_of_the_drive() -> None:
+    random, step, late = np.random.default_rng(3), 0.02, 0.2
+    learner = MotionLearner(input="command")
+    learner.start_run("course")
+    pose, poses, errors, squares = np.zeros(3), [], [], []
+    for k, t in enumerate(np.arange(0.0, 70.0, step).tolist()):
+        if k % 75 == 0:
+            v, omega = random.uniform(0.2, 1.0), random.uniform(-0.8, 0.8)
+        learner.push_command(t, v, omega)
+        learner.push_wheels(t, v, omega)
+        if k >= 10 and k % 3 == 0:
+            learner.push_pose(
+                t, *(poses[k - round(late / step)] + random.normal((0, 0, 0), (0.02, 0.02, 0.01)))
+            )
+        poses.append(pose)
+        odometry = learner.odometry()
+        if odometry is not None and t > 30.0:
+            error = odometry.pose - pose
+            error[2] = (error[2] + np.pi) % (2.0 * np.pi) - np.pi
+            errors.append(error)
+            squares.append(error @ np.linalg.solve(odometry.covariance, error))
+        heading = pose[2] + 0.3 * omega * step
+        pose = pose + step * np.array([0.9 * v * np.cos(heading), 0.9 * v * np.sin(heading), 0.6 * omega])
+    position, heading_error = np.hypot(*np.transpose(errors)[:2]), np.abs(np.transpose(errors)[2])
+    assert np.mean(position) < 0.02  # 0.1 where the lateness is not taken from the stamps
+    assert np.mean(heading_error) < 0.01
+    assert 0.3 < np.mean(squares) < 4.5
+
+
 def test_a_heading_is_wrapped() -> None:
     learner = MotionLearner()
     learner.start_run("run")

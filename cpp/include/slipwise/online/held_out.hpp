@@ -27,6 +27,7 @@ struct Knowledge {
   std::shared_ptr<const MotionPosterior> motion;  ///< of the structure that predicts
   std::shared_ptr<const MotionPosterior> slip;    ///< of the best structure that has slip
   std::shared_ptr<const DisturbanceFilter> disturbance;  ///< how slip differs from that now and then
+  std::shared_ptr<const MotionPosterior> clock = {};     ///< that says how late poses are; nothing without one
   std::shared_ptr<const SourceNoise> sources = {};       ///< how large errors of poses are; nothing of one sort alone
 };
 
