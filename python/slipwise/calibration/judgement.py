@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -28,8 +29,9 @@ class Still:
     """The prediction "stands still", at the horizon where the model does best beside it."""
 
     horizon: float  # s
-    error: float  # the model's mean error: m, or rad where turns alone were measured
+    error: float  # the model's mean error: m, or rad
     motion: float  # how far the robot moves: the mean error of one said to stand still
+    turns: bool = False  # of headings, where positions tell nothing
 
     @property
     def explained(self) -> float:
@@ -59,19 +61,13 @@ class Judgement:
 
     @property
     def beats_baseline(self) -> bool:
-        """Neither position nor heading worse on the segments seen, and one of them better beyond chance."""
+        """Neither position nor heading worse, and one of them better, beyond chance."""
         return not self.fault()
 
     @property
     def worse(self) -> tuple[str, ...]:
-        """Which of position and heading are worse than the baseline's on the segments seen."""
-        return tuple(name for name, ratio in self._ratios().items() if ratio[0] > SAME)
-
-    @property
-    def much_worse(self) -> bool:
-        """Whether an error is so much worse that chance is no explanation."""
-        ratios = self._ratios()
-        return any(ratios[name][0] > MUCH or ratios[name][1] > SAME for name in self.worse)
+        """Which of position and heading are worse than the baseline's, by more than chance explains."""
+        return tuple(name for name, (value, low, _) in self._ratios().items() if value > MUCH or low > SAME)
 
     def fault(self) -> str:
         """Say why the method does not beat the kinematic baseline; empty where it does."""
@@ -113,7 +109,8 @@ def judgement_of(
     )
     if held_out.segments == 0:
         return Judgement(held_out, _UNKNOWN, _UNKNOWN, None)
-    still = [_still(each, turns=held_out.turns_alone) for each in (*horizons, learned)]
+    turns = held_out.turns_alone or _stays(learned, baseline, horizons)
+    still = [_still(each, turns=turns) for each in (*horizons, learned)]
     return Judgement(
         held_out,
         ratio_of_means(learned.position_error[half], baseline.position_error[half]),
@@ -131,7 +128,22 @@ def _still(learned: Predictions, *, turns: bool) -> Still | None:
     motion = _mean(motions[half])
     if too_short(len(learned)) or motion <= 0.0:
         return None
-    return Still(learned.horizon, _mean(errors[half]), motion)
+    return Still(learned.horizon, _mean(errors[half]), motion, turns)
+
+
+def _stays(learned: Predictions, baseline: Predictions, horizons: Sequence[Predictions]) -> bool:
+    """Whether the robot is told to stay in its place, and does: its positions do no more than scatter.
+
+    What is not driven goes with the root of the time at most; what drives or slides away, with the time.
+    """
+    shortest = min((each for each in horizons if len(each)), key=lambda each: each.horizon, default=learned)
+    told = _mean(np.hypot(*baseline.pose[held_out_half(len(baseline)), :2].T))
+    far, near = _way(learned), _way(shortest)
+    return told < far < near * math.sqrt(learned.horizon / shortest.horizon)
+
+
+def _way(learned: Predictions) -> float:
+    return _mean(learned.distance[held_out_half(len(learned))])
 
 
 def too_short(count: int) -> bool:

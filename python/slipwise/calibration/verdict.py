@@ -140,7 +140,7 @@ def _unexplained(judgement: Judgement, facts: LogFacts) -> str:
         return ""
     still, inputs = judgement.still, _FOLLOWED[facts.input_name]
     assert still is not None
-    unit = "rad" if judgement.held_out.turns_alone else "m"
+    unit = "rad" if still.turns else "m"
     share, least = 100.0 * max(still.explained, 0.0), 100.0 * LEAST_EXPLAINED
     return (
         f"{_REFUSED} the {inputs} do not explain the poses. They explain {share:.0f} % of the motion, a "
@@ -220,7 +220,7 @@ def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
             f"Check that {_FOLLOWED[facts.input_name]} and poses come from the same robot, drive and clock, "
             "in m/s, rad/s, m and rad."
         )
-    elif judgement.much_worse:
+    elif judgement.worse:
         advice.append(
             "Look at the report for late poses, pose jumps or a wrong topic; until then use the kinematic "
             "baseline."

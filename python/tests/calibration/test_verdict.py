@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from contradictory_logs import circular, sound_log, stopped
@@ -50,6 +52,44 @@ def test_straight_drive_at_constant_speed_names_what_it_does_not_determine() -> 
     stated = {p.name for p in result.model.content.parameters if not p.identifiable}
     assert stated == set(result.verdict.not_identifiable)
     assert result.model.mean[1] == pytest.approx(0.0, abs=0.05)  # what is not determined stays at the prior
+
+
+def test_straight_drives_are_not_refused_for_their_headings_and_turns_in_place_not_for_their_positions(
+    subtests: pytest.Subtests,
+) -> None:
+    for name, speeds, yaw_rates in (
+        ("straight", (0.2, 1.0), (0.0, 0.0)),
+        ("in place", (0.0, 0.0), (-1.0, 1.0)),
+    ):
+        for seed in range(6):
+            with subtests.test(name, seed=seed):
+                drive = Drive(
+                    seed=seed,
+                    basis=SLIP,
+                    alpha=(-0.05, -0.3),
+                    speeds=speeds,
+                    yaw_rates=yaw_rates,
+                    pose_std=(0.01, 0.005),
+                    slip_psd=(0.0, 0.0, 0.0),
+                )
+                assert verdict_of(drive, input_name="command").verdict.good
+
+
+def test_turns_of_another_robot_are_told_by_their_headings() -> None:
+    turns = simulated_log(Drive(speeds=(0.0, 0.0), slip_psd=(0.0, 0.0, 0.0))).runs[0]
+    other = simulated_log(Drive(seed=2, speeds=(0.0, 0.0), slip_psd=(0.0, 0.0, 0.0))).runs[0]
+    log = Log(runs=(replace(turns, poses=other.poses, wheels=None),))
+    verdict = calibrate(log, input="command", settings=make_settings({"basis": "edd-2"})).verdict
+    assert not verdict.good
+    assert " rad after" in verdict.sentence.split("the model by")[0]
+
+
+def test_a_robot_that_is_carried_away_while_it_turns_is_not_explained_by_its_turns() -> None:
+    run = simulated_log(Drive(basis=SLIP, alpha=(0.0, -0.3), speeds=(0.0, 0.0))).runs[0]
+    away = np.interp(run.poses.t, np.arange(0.0, 200.0, 7.0), np.random.default_rng(0).normal(0.0, 2.0, 29))
+    log = Log(runs=(replace(run, poses=replace(run.poses, x=run.poses.x + away)),))
+    verdict = calibrate(log, input="command", settings=make_settings({"basis": "edd-2"})).verdict
+    assert "the commands do not explain the poses" in verdict.sentence
 
 
 def test_commands_that_never_change_do_not_determine_lag_and_delay() -> None:
