@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +14,13 @@ from slipwise.models.limits import LearnedLimit
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import known
 from slipwise.models.schema import UNIDENTIFIABLE_RATIO
+from slipwise.models.sensor_look import IfTurned, if_turned
 from slipwise.number_text import estimate_texts
 
 Floats = NDArray[np.float64]
 
 _ROUNDING = 1e-9  # of a derivative; what is smaller is left of an inversion
+_MATTERS = 0.01  # of a number, by which a sensor that may be turned has to change it
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +66,7 @@ class LearnedNumbers:
     """Makes the numbers of one model, and decides which of them a file for another tool may state."""
 
     def __init__(self, model: Model) -> None:
+        self._model = model
         self._covariance = model.covariance
         self._prior = np.square(model.prior_std)
         guessed = np.array([not parameter.identifiable for parameter in model.vector.rows], dtype=bool)
@@ -112,7 +116,8 @@ class LearnedNumbers:
     def objection(self, number: LearnedNumber) -> str:
         """Say why the number must not be written; empty where it may be.
 
-        It may where it is known to the stated fraction, and the log says more about it than the prior.
+        It may where it is known to the stated fraction, the log says more about it than the prior, and it is
+        the same whether the robot slips sideways or its pose sensor is turned.
         """
         if not math.isfinite(number.value):
             return "what was learned gives no finite number"
@@ -122,7 +127,18 @@ class LearnedNumbers:
             return f"{shown} is too uncertain"
         if self._guessed_fraction(number) > UNIDENTIFIABLE_RATIO:
             return f"this log does not determine it: {shown} is about the initial guess"
+        turned = self._if_turned
+        change = 0.0 if turned is None else float(number.by_parameter[: len(turned.change)] @ turned.change)
+        if turned is not None and abs(change) > max(std, _MATTERS * abs(number.value)):
+            return (
+                f"this log does not tell side slip from a turned pose sensor: {shown}, or"
+                f" {number.value + change:.3g} if it is {turned.words}"
+            )
         return ""
+
+    @cached_property
+    def _if_turned(self) -> IfTurned | None:
+        return if_turned(self._model)
 
     def text(self, number: LearnedNumber) -> str:
         """Return the number with its standard deviation, such as `1.68 +- 0.02`."""

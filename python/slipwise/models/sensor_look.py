@@ -11,7 +11,7 @@ import numpy as np
 from slipwise.models.body_gains import BodyTwists, body_twists, straight_line
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION
-from slipwise.number_text import estimate_text
+from slipwise.number_text import estimate_text, estimate_texts
 
 _FAR = 0.05  # [m] nearer to the centre of turning, a sensor hardly matters
 _TURNED = 0.05  # [rad] the same of its heading
@@ -87,17 +87,42 @@ def sensor_sentences(model: Model) -> list[str]:
         side = "left" if look.pose[2] > 0.0 else "right"
         degrees = estimate_text(math.degrees(abs(look.pose[2])), math.degrees(look.std[2]))
         place += f"{', ' if place else ''}turned by {degrees} deg to the {side}"
-    settings = model.content.provenance.settings.get("sensor_extrinsics")
-    given = settings if isinstance(settings, dict) else {}
-    numbers = " ".join(
-        f"--set sensor_extrinsics.{name}={float(given.get(name, 0.0)) + look.pose[axis]:.2f}"
-        for axis, name in enumerate(("x", "y", "yaw"))
-        if axis in seen
-    )
+    numbers = " ".join(_setting(model, look, axis) for axis in seen)
     terms = ", ".join(_TERMS[axis] for axis in seen)
     look_like = f"The learned slip ({terms}) looks like a pose sensor {place}"
     there = f"if it sits there, add {numbers}"
     return [f"{look_like}: {there}; `export --to mounts --no-side-slip` writes it"]
+
+
+@dataclass(frozen=True, eq=False)
+class IfTurned:
+    """What a model would have learned, were its side slip the heading of a sensor that is turned."""
+
+    change: np.ndarray  # [slip parameters] of their values
+    words: str  # by how much it is turned, and the setting that says so
+
+
+def if_turned(model: Model) -> IfTurned | None:
+    """Return what a turned sensor would change; None where nothing looks like one."""
+    if model.motion.slip_size == 0 or model.motion.sensor_extrinsics:
+        return None
+    look = sensor_look(model)
+    if not look.clear(2):
+        return None
+    body, change = body_twists(model), np.zeros(model.motion.slip_size)
+    cos, sin = math.cos(look.pose[2]), math.sin(look.pose[2])
+    turned = np.array([[cos, -sin], [sin, cos]]) @ body.mean[:, :2].T
+    for axis, moved in enumerate(turned):
+        change += np.linalg.pinv(body.features[:, axis]) @ (moved - body.mean[:, axis])
+    degrees = " +- ".join(estimate_texts(math.degrees(abs(look.pose[2])), math.degrees(look.std[2])))
+    return IfTurned(change, f"turned by {degrees} deg, as {_setting(model, look, 2)} says")
+
+
+def _setting(model: Model, look: SensorLook, axis: int) -> str:
+    settings = model.content.provenance.settings.get("sensor_extrinsics")
+    name = ("x", "y", "yaw")[axis]
+    given = float(settings.get(name, 0.0)) if isinstance(settings, dict) else 0.0
+    return f"--set sensor_extrinsics.{name}={given + look.pose[axis]:.2f}"
 
 
 def _along(body: BodyTwists, axis: int) -> tuple[np.ndarray, np.ndarray]:

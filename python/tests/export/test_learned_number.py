@@ -219,3 +219,20 @@ def test_the_c_header_says_what_is_not_identified_and_stays_the_model() -> None:
     assert "not identified" not in other
     assert "/* limits.speed.slew_rate_up, 12.5 +- 1.3e+07, not identified */" in lines
     assert "/* limits.speed.saturation, 1.000 +- 0.010 */" in lines
+
+
+def test_what_a_turned_sensor_would_change_is_not_written_and_said_with_what_it_would_be() -> None:
+    """A body that goes 0.95 of its wheels, by poses that are turned by 20 degrees to the left."""
+    cos, sin = math.cos(math.radians(20.0)), math.sin(math.radians(20.0))
+    turned = named("full-linear-6", lon__V=0.95 * cos - 1.0, lat__V=-0.95 * sin, ang__w=-0.3)
+    file = exported(make_model(replace(turned, std=0.002)), "diff-drive", SEPARATED)
+    assert not {name for name in file.values if "multiplier" in name}
+    why = file.kept["left_wheel_radius_multiplier"]
+    assert re.search(
+        r", or 0\.95 if it is turned by 20\.0\d* \+- 0\.1\d* deg, as --set sensor_ext\S*yaw=0\.35", why
+    )
+    slight = named("full-linear-6", lon__V=-0.05, lat__V=-0.07, ang__w=-0.3)  # 0.3 % of the radius
+    assert (
+        "left_wheel_radius_multiplier"
+        in exported(make_model(replace(slight, std=0.002)), "diff-drive", SEPARATED).values
+    )

@@ -13,7 +13,7 @@ from slipwise.logs.motion_windows import MotionWindows, wrapped
 
 _LEAST = 0.05  # [m] by the inputs; less tells no direction
 _PART = 0.3  # of the fast windows' distance by the inputs; slower windows are left to the others
-_MOST_TURN = 1.5  # [rad] by the inputs and by the poses; on a tighter arc the ends tell little of the course
+MOST_TURN = 1.5  # [rad] by the inputs and by the poses; on a tighter arc the ends tell little of the course
 _MOVED = 0.01  # [m] poses that moved less have no course
 
 
@@ -46,8 +46,8 @@ def driven_windows(windows: MotionWindows, sensor_yaw: float = 0.0) -> DrivenWin
     w = windows
     driven = np.hypot(w.forward, w.sideways)
     fast = float(np.quantile(driven, 0.9)) if len(w) else 0.0
-    along = (driven > max(_LEAST, _PART * fast)) & (np.abs(w.rotation) < _MOST_TURN)
-    along &= np.abs(w.turn) < _MOST_TURN
+    along = (driven > max(_LEAST, _PART * fast)) & (np.abs(w.rotation) < MOST_TURN)
+    along &= np.abs(w.turn) < MOST_TURN
     heading = w.start_yaw + 0.5 * w.turn - sensor_yaw + np.arctan2(w.sideways, w.forward)
     course = np.where(w.distance > _MOVED, np.exp(1j * wrapped(w.course - heading)), 0.0)
     return DrivenWindows(

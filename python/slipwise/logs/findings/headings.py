@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from slipwise.logs.findings.driven_windows import DrivenWindows
+from slipwise.logs.findings.driven_windows import MOST_TURN, DrivenWindows
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.input_units import likely_speeds
+from slipwise.number_text import estimate_text
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import Seen
@@ -29,19 +30,27 @@ _LEAST_PART = 0.15  # of the windows, before and after a jump
 _CERTAIN = 3.0  # standard errors of the angle between the two courses, beyond `_TURNED`
 
 
+_ASKEW = math.radians(10.0)  # from here on a sideways way is said, which may be slip; real logs have 8
+_ENOUGH_ASKEW = 20  # windows for that
+_SURE = 5.0  # its standard deviations
+_TOLD_APART = 0.1  # least singular value of ways and turns over the largest
+
+
 class TurnedPoses(Check):
     """Poses that go elsewhere than the inputs say, all by the same angle."""
 
     kind, family = "turned-poses", "signs and units"
     means = "the heading of the poses is turned, such as by 90 degrees: a sensor's frame, or east for north"
-    shows = "the mean course of the poses is off by more than 30 degrees"
-    cure = "`--pose-yaw-offset`, or the sensor's static transform"
+    shows = "the mean course of the poses is off by more than 30 degrees; from 10 on, it may be side slip"
+    cure = "`--pose-yaw-offset`, the sensor's static transform, or `--set sensor_extrinsics.yaw=...`"
     explained_by = ("does-not-move", "parent-twist", "course-heading")
 
     def look(self, seen: Seen) -> Finding | None:
         """Look at the mean course."""
         angle = _turned_by(seen)
-        if angle is None or abs(angle) > math.pi - _TURNED:
+        if angle is None:
+            return self._askew(seen)
+        if abs(angle) > math.pi - _TURNED:
             return None
         side = "left" if angle > 0.0 else "right"
         return self.found(
@@ -49,6 +58,37 @@ class TurnedPoses(Check):
             f"their heading is turned by {_degrees(angle)} deg",
             f"Give --pose-yaw-offset {_offset(angle):.4f}, which turns the heading of every pose [rad].",
             evidence=math.degrees(angle),
+        )
+
+    def _askew(self, seen: Seen) -> Finding | None:
+        """Look for less, apart from what an arm of the sensor does in turns."""
+        w = seen.windows
+        if seen.positions or not _agree(seen.driven):
+            return None
+        near = (np.abs(w.turn) < MOST_TURN) & (np.abs(w.rotation) < MOST_TURN)
+        ahead = (w.course - w.start_yaw - 0.5 * w.turn + seen.sensor_yaw)[near]
+        way = w.distance[near] * np.exp(1j * ahead)
+        columns = np.column_stack((w.forward, w.turn, w.sideways))[near]
+        sizes = np.sqrt(np.sum(columns**2, axis=0))
+        columns = columns[:, sizes > 0.0] / sizes[sizes > 0.0]
+        if len(way) < _ENOUGH_ASKEW or not sizes[0] > 0.0:
+            return None
+        values = np.linalg.svd(columns, compute_uv=False)
+        solve = np.linalg.pinv(columns)
+        straight = complex(solve[0] @ way)
+        left = ((way - columns @ (solve @ way)) * np.conj(straight)).imag / abs(straight) ** 2
+        angle, std = float(np.angle(straight)), float(np.linalg.norm(solve[0] * left))
+        if values[-1] < _TOLD_APART * values[0] or abs(angle) < max(_ASKEW, _SURE * std):
+            return None
+        side = "left" if angle > 0.0 else "right"
+        degrees = estimate_text(math.degrees(abs(angle)), math.degrees(std))
+        return self.found(
+            f"the poses move {degrees} deg to the {side} of their heading where the {seen.words.name} drive "
+            "straight on: a sensor that is turned on the robot would, or a robot that slips sideways so much",
+            f"If it is turned, --set sensor_extrinsics.yaw={seen.sensor_yaw - angle:.2f} says so: without "
+            "it, speeds and wheel radii are learned too small.",
+            evidence=math.degrees(angle),
+            spoils=False,
         )
 
 

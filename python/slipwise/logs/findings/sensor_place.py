@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from slipwise.logs.findings.driven_windows import MOST_TURN
 from slipwise.logs.findings.finding import Check, Finding
 
 if TYPE_CHECKING:
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
 
 _ENOUGH = 20  # windows,
 _TURNED = 2.0  # [rad^2] the sum of the squares of their turns
-_MOST_TURN = 1.5  # [rad] in a window; chords of tighter arcs say less
 _FAR = 0.35  # [m] from the centre of turning; real robots slip as if it were 0.3 m
 _CLEAR = 0.8  # correlation of sideways motion with turns
 
@@ -33,7 +33,7 @@ class SensorOffCentre(Check):
         w = seen.windows
         if seen.positions:
             return None
-        near = np.abs(w.turn) < _MOST_TURN
+        near = np.abs(w.turn) < MOST_TURN
         turn, ahead = w.turn[near], (w.course - w.start_yaw - 0.5 * w.turn + seen.sensor_yaw)[near]
         along, across = w.distance[near] * np.cos(ahead), w.distance[near] * np.sin(ahead)
         square = float(turn @ turn)

@@ -116,6 +116,24 @@ def test_a_short_stop_is_said_but_spoils_nothing() -> None:
     assert "It stands still from 51.0 to 58.5 s." in found[0].advice
 
 
+def test_a_sensor_that_is_turned_by_20_degrees_is_said_with_the_angle_and_spoils_nothing() -> None:
+    log = turned(sound_log(), np.radians(20.0))
+    for name in ("command", "wheel"):
+        (found,) = findings_of(log, name)
+        assert (found.kind, found.spoils) == ("turned-poses", False)
+        assert found.evidence == pytest.approx(-20.0, abs=1.0)
+        assert "to the right of their heading" in found.sentence
+        assert "--set sensor_extrinsics.yaw=0.3" in found.advice[0]
+        assert findings_of(log, name, sensor_yaw=np.radians(20.0)) == ()
+
+
+def test_an_arm_of_the_sensor_in_turns_to_one_side_is_not_said_to_turn_it() -> None:
+    drive = replace(SKID_STEERED, basis=_core.named_basis("full-linear-6"), alpha=(0, 0, 0, 0.3, 0, 0))
+    for yaw_rates in ((0.2, 0.8), (0.5, 0.5)):
+        found = findings_of(sound_log(replace(drive, yaw_rates=yaw_rates)), "wheel")
+        assert "turned-poses" not in {each.kind for each in found}
+
+
 def test_a_sensor_that_is_known_to_be_turned_is_no_contradiction() -> None:
     log = turned(sound_log(), 0.5 * np.pi)
     assert findings_of(log, "wheel", sensor_yaw=0.5 * np.pi) == ()
