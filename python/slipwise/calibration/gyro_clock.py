@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.logs.gyro import COLUMN
+from slipwise.logs.gyro import COLUMN, Turned, turned_by
 from slipwise.logs.log import Run
 from slipwise.logs.readings import number_rows
 from slipwise.number_text import estimate_text
@@ -24,9 +24,7 @@ _WINDOW = 10.0  # s
 _FEWEST_POSES, _FEWEST_WINDOWS = 8, 6
 _LATEST = 1.0  # s
 _GRID = np.arange(-_LATEST + 0.1, _LATEST, 0.1)  # s, where the search begins
-_LONGEST_STEP = 0.2  # s between rates
 _AROUND = np.arange(-2, 3) * 0.05  # s, over which a rate is a mean: the derivative must not be noise
-_FASTEST = 1e3  # rad/s; faster rates have another unit
 _ROUNDS = 4
 _WORST = 1e12  # condition, beyond which the drive tells nothing
 _ROUGH = 10  # windows by which the search begins
@@ -60,16 +58,14 @@ class GyroClock:
 class _Window:
     t: Floats  # of the poses
     yaw: Floats
-    stamps: Floats  # of the gyro, all of the run
-    turned: Floats  # until then
+    gyro: Turned  # of all of the run
 
     def left(self, late: float, scale: float) -> tuple[Floats, Floats]:
         """Return what is left of the headings [N], and derivatives by lateness and scale [N, 2]."""
         at = self.t + late
-        turned = np.interp(at, self.stamps, self.turned)
+        turned = self.gyro.at(at)
         ahead, behind = (
-            np.mean([np.interp(at + side + by, self.stamps, self.turned) for by in _AROUND], axis=0)
-            for side in (0.05, -0.05)
+            np.mean([self.gyro.at(at + side + by) for by in _AROUND], axis=0) for side in (0.05, -0.05)
         )
         rate = (ahead - behind) / 0.1
         free = np.column_stack((np.ones(len(self.t)), self.t - self.t.mean()))
@@ -112,24 +108,15 @@ def gyro_clock(runs: Sequence[Run]) -> GyroClock | None:
 
 
 def _windows(run: Run) -> list[_Window]:
-    rates, poses = number_rows(run, COLUMN), run.poses
-    if poses.course or len(poses) < _FEWEST_POSES or len(rates) < _FEWEST_POSES:
+    gyro, poses = turned_by(number_rows(run, COLUMN)), run.poses
+    if poses.course or len(poses) < _FEWEST_POSES or gyro is None:
         return []
-    stamps, rate = rates[:, 0], rates[:, 1]
-    if not (np.abs(rate) < _FASTEST).all():
-        return []
-    steps = np.diff(stamps)
-    turned = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * steps))
-    gaps = np.append(0, np.cumsum(steps > _LONGEST_STEP))
-    before = np.searchsorted(stamps, poses.t - _LATEST - 0.2, side="right") - 1
-    after = np.searchsorted(stamps, poses.t + _LATEST + 0.2)
-    inside = (before >= 0) & (after < len(stamps))
-    inside[inside] = gaps[before[inside]] == gaps[after[inside]]
+    inside = gyro.known(poses.t, _LATEST + 0.2)
     slot = np.floor((poses.t - poses.t[0]) / _WINDOW)
     changes = np.flatnonzero((np.diff(slot) != 0) | (np.diff(poses.frame) != 0)) + 1
     yaw = np.unwrap(poses.yaw)
     return [
-        _Window(poses.t[part], yaw[part], stamps, turned)
+        _Window(poses.t[part], yaw[part], gyro)
         for part in np.split(np.arange(len(poses)), changes)
         if len(part) >= _FEWEST_POSES and inside[part].all() and np.ptp(yaw[part]) > _TURNS
     ]

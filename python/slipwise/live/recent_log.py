@@ -5,14 +5,17 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import replace
 
 import numpy as np
 
-from slipwise.live.samples import Command, Pose, Stamped, Wheels
+from slipwise.live.samples import Command, Pose, Reading, Stamped, Wheels
 from slipwise.logs.findings.checks import OF_STREAM, looked_at
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import WholeLog
+from slipwise.logs.gyro import COLUMN
 from slipwise.logs.log import Inputs, Log, Poses, Run, empty_poses
+from slipwise.logs.navsat import course_of_path
 
 KEPT = 120.0  # s
 LOOKED_EVERY = 60.0  # s
@@ -22,7 +25,7 @@ _Row = tuple[float, ...]
 
 
 class RecentLog:
-    """Commands, wheels and poses of each source as they came.
+    """Commands, wheels, yaw rates and poses of each source as they came.
 
     Args:
         input_name: "command" or "wheel", the input that is learned from.
@@ -33,6 +36,7 @@ class RecentLog:
         self._input, self._unknown_after = input_name, unknown_after
         self._rows: dict[type | str, deque[_Row]] = {}  # by the kind; of further sources, by the name
         self._first = ""  # name of the first source
+        self._positions = False  # which has no headings
         self._newest, self._looked_at = -math.inf, math.nan
         self._found: dict[str, Finding] = {}
 
@@ -40,20 +44,22 @@ class RecentLog:
         """Take a sample; one that is not later than those of its kind says nothing.
 
         Args:
-            sample: a command, wheels or a pose; other samples are not kept.
+            sample: a command, wheels, a yaw rate or a pose; other samples are not kept.
             further: a pose of a source beside the first, by whose name it is kept.
         """
         kind: type | str = type(sample)
         if isinstance(sample, Pose):
             beside = (sample.roll, sample.pitch, sample.z)
             row: _Row = (sample.t, sample.x, sample.y, sample.yaw, *map(_or_nan, beside))
+            row = (*row[:3], 0.0 if math.isnan(sample.yaw) else sample.yaw, *row[4:])
             if further:
                 kind = sample.source
-                row = (*row[:3], 0.0 if math.isnan(sample.yaw) else sample.yaw, *row[4:])
             else:
-                self._first = sample.source
+                self._first, self._positions = sample.source, math.isnan(sample.yaw)
         elif isinstance(sample, Command | Wheels):
             row = (sample.t, sample.v, sample.vy, sample.omega)
+        elif isinstance(sample, Reading) and sample.column == COLUMN:
+            row = (sample.t, sample.value)
         else:
             return
         rows = self._rows.setdefault(kind, deque(maxlen=MOST))
@@ -83,7 +89,13 @@ class RecentLog:
     def _log(self) -> Log:
         commands, wheels = (self._inputs(kind) for kind in (Command, Wheels))
         others = {name: self._poses(name) for name in self._rows if isinstance(name, str)}
-        run = Run("live", commands, wheels, self._poses(Pose), others=others, source=self._first)
+        gyro = np.array(self._rows.get(Reading, ())).reshape(-1, 2).T
+        extra = dict(zip(("t", COLUMN), gyro, strict=True)) if gyro.size else {}
+        poses = self._poses(Pose)
+        if self._positions:
+            inputs = commands if wheels is None else wheels
+            poses = replace(poses, yaw=course_of_path(poses.t, poses.x, poses.y, inputs), course=True)
+        run = Run("live", commands, wheels, poses, extra, others=others, source=self._first)
         return Log(runs=(run,))
 
     def _poses(self, kind: type | str) -> Poses:

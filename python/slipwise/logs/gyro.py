@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.logs.held import UNKNOWN_AFTER
@@ -18,6 +19,39 @@ COLUMN = "gyro_z"  # rad/s, counter-clockwise
 _ENOUGH = 15  # seconds in which the inputs turn; with fewer nothing is said
 _LEAST, _MOST = 0.05, 5.0  # turns of the gyro over those of the inputs
 _NONE = np.empty((0, 2))
+_LONGEST_STEP = 0.2  # s between rates, over which they are integrated
+_FASTEST = 1e3  # rad/s; faster rates have another unit
+
+
+@dataclass(frozen=True, eq=False)
+class Turned:
+    """How far a robot has turned by its gyro, bias included."""
+
+    stamps: Floats  # [N] s, of the rates
+    turned: Floats  # [N] rad, until then
+    gaps: NDArray[np.int64]  # [N] between rates, so far
+
+    def at(self, t: Floats) -> Floats:
+        """Return how far it has turned at some times."""
+        return np.asarray(np.interp(t, self.stamps, self.turned))
+
+    def known(self, t: Floats, around: float) -> NDArray[np.bool_]:
+        """Say of some times [M] whether rates came without a gap from `around` [s] before to after."""
+        before = np.searchsorted(self.stamps, t - around, side="right") - 1
+        after = np.searchsorted(self.stamps, t + around)
+        inside = (before >= 0) & (after < len(self.stamps))
+        inside[inside] = self.gaps[before[inside]] == self.gaps[after[inside]]
+        return np.asarray(inside)
+
+
+def turned_by(rows: Floats) -> Turned | None:
+    """Integrate rows of (t, yaw rate) [N, 2]; None where there are none, or in another unit."""
+    if len(rows) < 2 or not (np.abs(rows[:, 1]) < _FASTEST).all():
+        return None
+    stamps, rate = rows.T
+    steps = np.diff(stamps)
+    turned = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * steps))
+    return Turned(stamps, turned, np.append(0, np.cumsum(steps > _LONGEST_STEP)))
 
 
 def gyro_alone(runs: Iterable[Run]) -> bool:

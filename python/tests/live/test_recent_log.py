@@ -11,7 +11,7 @@ from contradictory_logs import SKID_STEERED, sound_log
 from faulty_logs import FAULTS, with_fault
 
 from slipwise.live.recent_log import KEPT, RecentLog
-from slipwise.live.samples import Command, Pose, Stamped, Wheels
+from slipwise.live.samples import Command, Pose, Reading, Stamped, Wheels
 from slipwise.logs import Log
 
 LOG = sound_log(replace(SKID_STEERED, seconds=150.0))
@@ -50,6 +50,21 @@ def test_a_source_of_another_scale_is_found_beside_the_first() -> None:
             if isinstance(sample, Pose):
                 further = replace(sample, x=scale * sample.x, y=scale * sample.y, yaw=np.nan, source="map")
                 recent.take(further, further=True)
+            found |= {each.kind for each in recent.found()}
+        assert found == kinds
+
+
+def test_a_gyro_of_another_scale_is_found_beside_positions_alone() -> None:
+    (run,) = LOG.runs
+    yaw = np.unwrap(run.poses.yaw)
+    rates = zip(run.poses.t[1:].tolist(), (np.diff(yaw) / np.diff(run.poses.t)).tolist(), strict=True)
+    turns = [Reading(t - 0.025, "gyro_z", rate) for t, rate in rates]
+    positions = [replace(each, yaw=np.nan) if isinstance(each, Pose) else each for each in samples_of(LOG)]
+    for scale, kinds in ((1.0, set()), (1.15, {"gyro-scale"})):
+        recent, found = RecentLog("wheel", 0.5), set[str]()
+        gyro = [replace(each, value=scale * each.value) for each in turns]
+        for sample in sorted((*positions, *gyro), key=lambda each: each.t):
+            recent.take(sample)
             found |= {each.kind for each in recent.found()}
         assert found == kinds
 

@@ -16,6 +16,7 @@ from slipwise.logs.findings.course_heading import CourseHeading
 from slipwise.logs.findings.drifting_poses import DriftingPoses
 from slipwise.logs.findings.encoders import ReversalJumps, WheelSpikes
 from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.findings.gyro_scale import GyroScale
 from slipwise.logs.findings.gyro_turns import GyroTurnsOtherwise
 from slipwise.logs.findings.headings import (
     BackwardPoses,
@@ -81,6 +82,7 @@ WHOLE: tuple[Check, ...] = (
     ClockOffset(),
     ClockDrift(),
     SourceScale(),
+    GyroScale(),
     TwoSources(),
 )
 #: What a live node looks for in its last minutes; two sources it watches sample by sample.
@@ -97,6 +99,7 @@ OF_STREAM: tuple[Check, ...] = (
     ClockOffset(),
     ClockDrift(),
     SourceScale(),
+    GyroScale(),
 )
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(
