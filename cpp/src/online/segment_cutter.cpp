@@ -18,6 +18,9 @@ constexpr std::size_t kRecent = 64;       // intervals between poses that tell t
 SLIPWISE_TUNING(kLeastFraction, 0.25);    // of the length asked for; a frame shorter than this is no segment
 SLIPWISE_TUNING(kLeastOfPositions, 0.5);  // of it; so long is a segment between positions at least,
 SLIPWISE_TUNING(kTurnKnown, 0.01);        // [rad] where they tell its turn so well, which is little beside its slip
+SLIPWISE_TUNING(kStillPart, 0.1);         // of the run's fastest so far; what is slower stands, if it is slow at all
+SLIPWISE_TUNING(kStillAtMost, 2e-3);      // [m/s, rad/s] and slower, every robot stands
+SLIPWISE_TUNING(kToAndFro, 0.5);          // of a way or turn; what gets less far is noise of wheels that stand
 SLIPWISE_TUNING(kLasting, 0.1);           // [m] by so much positions are off for seconds, however little they scatter
 
 double median_of(std::vector<double> values) {
@@ -30,6 +33,18 @@ double median_of(std::vector<double> values) {
 }
 
 double speed_of(const BodyTwist& fastest) { return std::max(fastest.v, fastest.omega); }
+
+/// Whether inputs do no more than noise: they are slow, beside what this run drove so far or by going to and fro.
+bool stands(const InputBuffer& inputs, double from, double to, double still_speed) {
+  const double fastest = speed_of(inputs.fastest(from, to));
+  if (fastest > still_speed || fastest <= std::max(kStillAtMost, kStillPart * speed_of(inputs.fastest_until(to)))) {
+    return fastest <= still_speed;
+  }
+  const HeldMotion net = inputs.held_motion(from, to);
+  const InputBuffer::Driven all = inputs.driven(from, to);
+  return std::hypot(net.forward, net.sideways) <= kToAndFro * all.distance &&
+         std::abs(net.rotation) <= kToAndFro * all.angle;
+}
 
 }  // namespace
 
@@ -196,7 +211,7 @@ std::optional<Reason> SegmentCutter::problem(std::size_t end, const InputBuffer&
     return Reason::UnknownInput;
   }
   const BodyTwist fastest = inputs.fastest(from, to);
-  if (speed_of(fastest) <= rules_.still_speed) {
+  if (stands(inputs, from, to, rules_.still_speed)) {
     return Reason::StandingStill;
   }
   double longest = 0.0;

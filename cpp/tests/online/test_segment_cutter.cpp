@@ -57,6 +57,29 @@ TEST_CASE("a parked robot teaches nothing, and says so") {
   }
 }
 
+TEST_CASE("a robot that never drives faster than 1 cm/s teaches; one that drove 1 m/s stands at that speed") {
+  for (const double before : {0.0, 1.0}) {
+    Setting s;
+    s.drive(0.0, 5.0, before);
+    s.drive(5.05, 20.0, 0.01);
+    s.poses(0, 200);
+    REQUIRE(!s.cuts.empty());
+    CHECK(s.cuts.back().rejected.has_value() == (before == 1.0));
+  }
+}
+
+TEST_CASE("wheels whose noise goes to and fro stand, also before the robot ever drove") {
+  Setting s;
+  for (int i = 0; i < 400; ++i) {
+    s.inputs.push({0.05 * i, {i % 3 == 0 ? 0.012 : -0.006, 0.0, 0.0}});
+  }
+  s.poses(0, 190);
+  REQUIRE(!s.cuts.empty());
+  for (const SegmentCut& cut : s.cuts) {
+    CHECK(cut.rejected == Reason::StandingStill);
+  }
+}
+
 TEST_CASE("no segment spans unknown inputs; the next begins once they are known again") {
   Setting s;
   s.drive(0.0, 3.0, 1.0);

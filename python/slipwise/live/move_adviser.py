@@ -113,7 +113,10 @@ class MoveAdviser:
         return (yield from choose_next_moves(knowledge, prior_std, commands, COUNT))
 
     def _commands(self, model: Model) -> Floats:
-        """Return what the robot may be asked, [N, 3] (v, vy, omega): no faster, no tighter than it drove."""
+        """Return what the robot may be asked, [N, 3] (v, vy, omega): no faster, no tighter than it drove.
+
+        Forwards and in reverse by themselves; where it never went, it is asked for the slowest speed alone.
+        """
         span = model.content.range
         if max(map(abs, span.speed)) < SLOWEST or self._turning.curvature == 0.0:
             raise _NotYetError("drive a slow curve first: the robot has not driven and turned yet")
@@ -121,6 +124,8 @@ class MoveAdviser:
         found = CommandSpace(limits.speed, limits.yaw_rate).grid(LEVELS)
         v, _, omega = np.abs(found).T
         kept = (omega <= 1.001 * self._turning.curvature * np.maximum(v, SLOWEST)) & (v + omega > 0.0)
+        careful = 1.001 * limits.speed / (LEVELS - 1)
+        kept &= (found[:, 0] >= min(span.speed[0], -careful)) & (found[:, 0] <= max(span.speed[1], careful))
         if not self._reverse:
             kept &= found[:, 0] > REVERSE
         found = found[kept]

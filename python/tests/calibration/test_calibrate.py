@@ -106,6 +106,21 @@ def test_errors_of_the_verdict_are_those_of_the_evaluation(settings: dict[str, s
     )
 
 
+def test_a_robot_that_creeps_at_1_cm_per_second_is_learned() -> None:
+    drive = Drive(
+        seconds=200.0,
+        basis=_core.named_basis("edd-2"),
+        alpha=(-0.05, -0.3),
+        speeds=(0.002, 0.01),
+        yaw_rates=(-0.02, 0.02),
+        pose_std=(0.0005, 0.001),
+        slip_psd=(0.0, 0.0, 0.0),
+    )
+    for name in ("command", "wheel"):
+        model = calibrate(simulated_log(drive), input=name, settings=make_settings({"basis": "edd-2"})).model
+        assert model.mean[:2] == pytest.approx((-0.05, -0.3), abs=0.04)
+
+
 def test_never_moving_robot_is_said_with_advice() -> None:
     with pytest.raises(LogError, match=r"the robot never moves in this log: .* stand still"):
         calibrate(Log(runs=(steady_run(seconds=20.0, v=0.0),)))

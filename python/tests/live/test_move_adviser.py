@@ -75,6 +75,16 @@ def test_what_is_not_learned_is_not_asked_for() -> None:
     assert (v >= 0.0).all()
 
 
+def test_a_robot_that_was_never_driven_backwards_is_asked_for_the_slowest_speed_there() -> None:
+    content = learned_model().content
+    fastest = max(map(abs, content.range.speed))
+    forwards = content.range.model_copy(update={"speed": (0.0, fastest)})
+    model = Model(content.model_copy(update={"range": forwards}))
+    v, _, _ = commands_of(MoveAdviser(reverse=True, turning=turned(5.0)), model)
+    assert (v >= -0.26 * fastest).all()
+    assert len(v) == 3
+
+
 def test_before_the_robot_turned_it_is_said_what_to_do() -> None:
     adviser = MoveAdviser(reverse=True, turning=Turning())
     _, _, found = commands_of(adviser, learned_model())

@@ -22,7 +22,7 @@ namespace slipwise {
 struct SegmentRules {
   double late_factor = 2.5;        ///< a pose after a gap of more than this many median intervals is late: never an end
   double length_tolerance = 0.05;  ///< a segment may be this fraction longer or shorter than asked for
-  double still_speed = 0.02;       ///< [m/s, rad/s] a segment whose inputs never exceed this teaches nothing
+  double still_speed = 0.02;       ///< [m/s, rad/s] faster inputs never stand; slower ones may, beside those of the run
   double of_positions = 0.0;       ///< [s]; one between positions alone is so long, unless half of it tells as much
 };
 
