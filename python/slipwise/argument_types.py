@@ -14,6 +14,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from slipwise.errors import SettingsError
+from slipwise.number_text import list_text
 
 _WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "text", Path: "a path"}
 _NUMBERS = {float: ("__float__", "__index__"), int: ("__index__",)}  # kinds, and how they are converted
@@ -86,7 +87,7 @@ def _words(hint: Any) -> str:
     origin, inside = get_origin(hint), get_args(hint)
     if origin in (Union, types.UnionType):
         words = [_words(each) for each in inside if not (each is str and Path in inside)]
-        return " or ".join(filter(None, (", ".join(words[:-1]), words[-1])))
+        return list_text(words, "or")
     if origin is tuple:
         return "numbers" if inside[-1] is ... else f"{len(inside)} numbers"
     if origin is Sequence:

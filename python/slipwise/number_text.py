@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers as people read them: a few significant digits, and a dash where there is none."""
+"""Numbers, and lists of words, as people read them: a few significant digits, a dash where there is none."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 DASH = "–"
 ROUNDING = 1e-12  # in SI units; what is smaller is the rounding of a computation, not a result
 MOST_DECIMALS = 6
+
+
+def list_text(words: Sequence[str], last: str) -> str:
+    """Return words as a sentence lists them: commas between them, `last` ("and", "or") before the last."""
+    return f" {last} ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
 def number_text(value: float, digits: int = 3) -> str:

@@ -15,6 +15,9 @@ namespace {
 
 /// Where the clock offset stands among the parameters, if it is learned.
 std::optional<Eigen::Index> place_of_offset(const MotionModel& model) {
+  if (!model.learned().clock_offset) {
+    return std::nullopt;
+  }
   const std::vector<ParameterInfo> names = model.parameters();
   const auto found = std::ranges::find(names, "clock_offset", &ParameterInfo::name);
   return found == names.end() ? std::nullopt : std::optional<Eigen::Index>(found - names.begin());

@@ -11,7 +11,7 @@ import numpy as np
 from slipwise.models.body_gains import body_twists, sideways_twists, straight_line
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, known
-from slipwise.number_text import estimate_text
+from slipwise.number_text import estimate_text, list_text
 
 LEARNED = 0.15  # standard deviation up to which a gain of the actuator is learned; that of its prior is 0.2
 AS_COMMANDED = 0.02  # a gain of the actuator that is known to be so close to one is not worth a sentence
@@ -93,8 +93,7 @@ def _moves(gains: SlipGains, source: str, besides: str = "") -> str:
     parts = [f"{verb} {gain.percent()}" for verb, gain in ways if gain is not None and gain.identified]
     if not parts:
         return "The log does not identify how much the robot slips."
-    said = " and ".join(filter(None, (", ".join(parts[:-1]), parts[-1])))
-    sentence = f"{said} of what {source}{besides}."
+    sentence = f"{list_text(parts, 'and')} of what {source}{besides}."
     return sentence[0].upper() + sentence[1:]
 
 

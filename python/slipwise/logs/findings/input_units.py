@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import math
 
+from slipwise.number_text import list_text
+
 _WHEEL = {  # radians per second in a wheel's unit
     "rad/s": 1.0,
     "rev/s": 2.0 * math.pi,
@@ -27,19 +29,15 @@ def likely_speeds(scale: float) -> str:
         for name, size in _WHEEL.items()
         if _within(scale / size, _RADIUS)
     ]
-    return _listed([*plain, *wheels])
+    return list_text([*plain, *wheels], "or")
 
 
 def likely_turns(scale: float) -> tuple[str, float]:
     """Say in which units poses would turn `scale` times as much as inputs say, and the first factor."""
     found = {name: size for name, size in _TURN.items() if _within(scale / size, _TURN_SLIP)}
-    said = _listed([f"in {name} (times {size:.4g})" for name, size in found.items()])
+    said = list_text([f"in {name} (times {size:.4g})" for name, size in found.items()], "or")
     return said, next(iter(found.values()), scale)
 
 
 def _within(value: float, span: tuple[float, float]) -> bool:
     return span[0] <= value <= span[1]
-
-
-def _listed(names: list[str]) -> str:
-    return " or ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else "".join(names)
