@@ -168,10 +168,13 @@ def from_commands(
     return [Found(p.name, true[p.name], p.value, p.std, p.prior_std) for p in model.content.parameters]
 
 
-def from_wheels_too(seed: int, seconds: float = SECONDS) -> list[Found]:
-    """Learn the actuator from commands and wheel speeds, the rest from wheel speeds and poses."""
-    robot = with_response(drawn_robot(seed), seed)
+def from_wheels_too(seed: int, seconds: float = SECONDS, rate: float = ROBOT.rate) -> list[Found]:
+    """Learn the actuator from commands and wheel speeds at `rate` [Hz], the rest from these and poses."""
+    robot = replace(with_response(drawn_robot(seed), seed), rate=rate)
     run = known_run(robot, commands(seed, seconds), (0.0, seconds), random=np.random.default_rng([seed, 3]))
+    assert run.wheels is not None
+    amid = replace(run.wheels, t=run.wheels.t + 0.5 / robot.rate)  # of what each wheel speed is the mean of
+    run = replace(run, wheels=amid)
     alone = {"bases": [LEARN["basis"]], "structures": ["joint", "cascaded"]}
     settings = make_settings({**LEARN, "basis": "auto", "auto": alone})
     learner = _core.MotionLearner(core_settings(settings, "command", ()))

@@ -99,12 +99,14 @@ void SegmentStream::reject_gated(const GatedPoses& gated) {
 void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
   for (const SegmentCut& cut : cuts) {
     if (!cut.rejected) {
-      const double start = cut.first.t;
-      const double end = cut.second.t;
+      // A stretch ends where its last wheel speed begins: for how long that one stands, only the next one says.
+      const double start = wheels_.measured_since(cut.first.t);
+      const double end = wheels_.measured_since(cut.second.t);
       items_.emplace_back(WheelSegment{.commands = commanded({.start = start, .end = end}, kActuatorBack, start),
-                                       .wheels = wheels_.slice(start, end, SliceKind::Wheels),
+                                       .wheels = wheels(start, end),
                                        .start = start,
-                                       .end = end});
+                                       .end = end,
+                                       .known_at = cut.second.t});
     }
   }
 }
@@ -244,8 +246,7 @@ DrivenSegment SegmentStream::stretch(double start, double end, double back) cons
     set_actuator_state(segment);
   }
   const double before = std::min(back, kLookBack);
-  InputHistory driving = settings_.from_commands ? commanded(segment, before, start)
-                                                 : wheels_.slice(start - before, end, SliceKind::Wheels);
+  InputHistory driving = settings_.from_commands ? commanded(segment, before, start) : wheels(start - before, end);
   return {.inputs = std::move(driving), .segment = std::move(segment), .known_at = end};
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "slipwise/linear/same_stamp.hpp"
@@ -77,6 +78,11 @@ BodyTwist InputBuffer::fastest_until(double t) const {
 std::size_t InputBuffer::count_until(double t) const {
   const auto after = std::ranges::upper_bound(samples_, t + kSameStamp, {}, &InputSample::t);
   return static_cast<std::size_t>(std::distance(samples_.begin(), after));
+}
+
+double InputBuffer::measured_since(double t) const {
+  const std::size_t i = count_until(t) - 1;
+  return i == 0 ? samples_.front().t : std::midpoint(samples_[i - 1].t, samples_[i].t);
 }
 
 std::optional<BodyTwist> InputBuffer::held_at(double t) const {
@@ -183,12 +189,17 @@ InputHistory InputBuffer::slice(double start, double end, SliceKind kind,
     }
   };
   const std::size_t from = std::max<std::size_t>(count_until(start), 1) - 1;
-  if (kind == SliceKind::Wheels && from < samples_.size() && samples_[from].t == first_) {
+  if (kind != SliceKind::Commands && from < samples_.size() && samples_[from].t == first_) {
     thinned.append({first_ - kLeadIn, samples_[from].twist});
   }
   for (std::size_t i = from; i < samples_.size() && !later(samples_[i].t, end); ++i) {
-    const bool continues = i == from && samples_[i].t > first_;
-    add(continues ? InputSample{samples_[i].t - kLongAgo, samples_[i].twist} : samples_[i]);
+    InputSample sample = samples_[i];
+    if (i == from) {
+      sample.t -= sample.t > first_ ? kLongAgo : 0.0;
+    } else if (kind == SliceKind::Measured) {
+      sample.t = measured_since(sample.t);
+    }
+    add(sample);
   }
   for (const InputSample& sample : future) {
     if (later(sample.t, samples_.empty() ? -std::numeric_limits<double>::infinity() : newest()) &&

@@ -154,7 +154,8 @@ void LoadedValues::check(Type<SegmentLinearization> /*type*/, const SegmentLinea
 }
 
 void LoadedValues::check(Type<WheelSegment> /*type*/, const WheelSegment& value) {
-  require(possible(value.start) && value.end > value.start && value.end - value.start <= kLongest,
+  require(possible(value.start) && value.end > value.start && value.end - value.start <= kLongest &&
+              value.known_at >= value.end && possible(value.known_at),
           "a stretch of wheel speeds has no duration");
 }
 

@@ -56,8 +56,8 @@ double longest_back(const StreamSettings& settings) {
 }
 
 double known_at(const StreamItem& item) {
-  return std::visit(Takes{[](const WheelSegment& wheels) { return wheels.end; },
-                          [](const TwistSegment& twists) { return twists.driven.end; },
+  return std::visit(Takes{[](const WheelSegment& wheels) { return wheels.known_at; },
+                          [](const TwistSegment& twists) { return twists.driven.known_at; },
                           [](const DrivenSegment& segment) { return segment.known_at; },
                           [](const auto& other) { return other.driven.known_at; }},
                     item);

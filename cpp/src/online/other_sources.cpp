@@ -107,9 +107,8 @@ void SegmentStream::emit_other(const PoseSource& source, const SegmentCut& cut, 
   }
   Segment longer = segment;
   longer.end += kClocksApart;
-  found.inputs = settings_.from_commands
-                     ? commanded(longer, kLookBack, segment.start)
-                     : wheels_.slice(path_start(segment) - kWheelsBack, longer.end, SliceKind::Wheels);
+  found.inputs = settings_.from_commands ? commanded(longer, kLookBack, segment.start)
+                                         : wheels(path_start(segment) - kWheelsBack, longer.end);
   items_.emplace_back(SourceSegment{std::move(found), cut.first.source, classes_of(cut)});
 }
 

@@ -309,6 +309,12 @@ InputHistory SegmentStream::commanded(const Segment& over, double back, double k
               : commands_.slice(path_start(over) - back, over.end, SliceKind::Commands, future);
 }
 
+/// Wheel speeds that drive a model are held until the next one, as it will be driven; behind commands they say what the
+/// drive did.
+InputHistory SegmentStream::wheels(double start, double end) const {
+  return wheels_.slice(start, end, settings_.from_commands ? SliceKind::Measured : SliceKind::Wheels);
+}
+
 /// A segment to be learned, or over a `horizon` to be predicted from what was known one horizon before.
 DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, double known_at,
                                     std::optional<double> horizon) const {
@@ -334,8 +340,8 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
     set_actuator_state(segment);
   }
   const double known = segment.start - (horizon ? settings_.age_of_known(*horizon) : 0.0);
-  InputHistory driving = by_wheels ? wheels_.slice(path_start(segment) - kWheelsBack, segment.end, SliceKind::Wheels)
-                                   : commanded(segment, kLookBack, known);
+  InputHistory driving =
+      by_wheels ? wheels(path_start(segment) - kWheelsBack, segment.end) : commanded(segment, kLookBack, known);
   return {.inputs = std::move(driving), .segment = std::move(segment), .known_at = known_at};
 }
 
@@ -343,7 +349,7 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
 void SegmentStream::set_actuator_state(Segment& segment) const {
   segment.initial = wheels_.known_at(segment.start);
   if (segment.initial) {
-    InputHistory until_start = wheels_.slice(path_start(segment) - kWheelsBack, segment.start, SliceKind::Wheels);
+    InputHistory until_start = wheels(path_start(segment) - kWheelsBack, segment.start);
     segment.known =
         MeasuredActuator{.twist = std::make_shared<const InputHistory>(std::move(until_start)), .until = segment.start};
   }

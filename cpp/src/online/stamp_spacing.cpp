@@ -51,7 +51,8 @@ PoseLateness pose_lateness(const MotionPosterior& posterior, double seconds) {
     return {};
   }
   const double spacing = std::isfinite(seconds) ? seconds : 0.0;
-  const double mean = posterior.estimate.mean[*place] + spacing / 2.0;
+  const double held = posterior.model.learned().response ? 0.0 : spacing / 2.0;
+  const double mean = posterior.estimate.mean[*place] + held;
   const double variance = posterior.estimate.covariance(*place, *place) + spacing * spacing / 12.0;
   return mean > 0.0 ? PoseLateness{.mean = mean, .std = std::sqrt(variance)} : PoseLateness{};
 }

@@ -37,6 +37,20 @@ TEST_CASE("what is driven is summed where the input is known") {
   CHECK(history.fastest_until(2.4).omega == 1.2);
 }
 
+TEST_CASE("a wheel speed that is measured stands for the time nearest to its stamp, and the last one for no less") {
+  InputBuffer history(0.5);
+  for (int i = 0; i < 5; ++i) {
+    history.push({0.2 * i, {static_cast<double>(i)}});
+  }
+  const InputHistory held = history.slice(0.0, 0.7, SliceKind::Wheels);
+  const InputHistory measured = history.slice(0.0, 0.7, SliceKind::Measured);
+  CHECK(held.at(0.39).v == 1.0);
+  CHECK(held.at(0.41).v == 2.0);
+  CHECK(measured.at(0.29).v == 1.0);
+  CHECK(measured.at(0.31).v == 2.0);
+  CHECK(measured.at(0.69).v == 3.0);  // the next one, stamped after the end, is not looked at
+}
+
 TEST_CASE("a slice acts as the whole history does, repeats thinned") {
   InputBuffer history(0.5);
   for (int i = 0; i < 300; ++i) {

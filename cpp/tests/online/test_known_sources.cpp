@@ -70,10 +70,15 @@ TEST_CASE("a worse source that covers the same time changes nothing of what is l
   for (const bool from_commands : {false, true}) {
     CAPTURE(from_commands);
     const Recording run = streamed_robot(1, 90.0);
-    const LearnedModel alone = learned(learner_settings(from_commands), run).model();
+    const MotionLearner alone = learned(learner_settings(from_commands), run);
     const MotionLearner both = learned(two_sources(from_commands), with_second(run, false));
-    CHECK(both.model().known.motion->estimate.mean.isApprox(alone.known.motion->estimate.mean, 1e-9));
-    CHECK(both.model().segments == alone.segments);
+    for (const Structure structure : {Structure::Joint, Structure::Cascaded, Structure::Direct}) {
+      const auto expected = alone.hypotheses().of(structure);
+      const auto found = both.hypotheses().of(structure);
+      REQUIRE((found == nullptr) == (expected == nullptr));
+      CHECK((found == nullptr || found->estimate.mean.isApprox(expected->estimate.mean, 1e-9)));
+    }
+    CHECK(both.model().segments == alone.model().segments);
     REQUIRE(both.sources().learned().size() == 2);
     CHECK(both.sources().learned()[1] == 0);
     const Estimate& found = both.sources().calibrations()[1].estimate();

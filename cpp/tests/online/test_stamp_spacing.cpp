@@ -52,6 +52,15 @@ TEST_CASE("poses are late by the offset and half the spacing of the wheel speeds
   CHECK(late.std == doctest::Approx(std::hypot(0.003, 0.05 / std::sqrt(12.0))));
 }
 
+TEST_CASE("wheel speeds behind commands are measured, not held") {
+  MotionPosterior behind = *with_offset_std(0.003);
+  behind.model = MotionModel({"none", {}, {}, {}}, {.clock_offset = true, .response = true});
+  behind.estimate = {Eigen::VectorXd::Constant(behind.model.size(), 0.02),
+                     1e-4 * Eigen::MatrixXd::Identity(behind.model.size(), behind.model.size())};
+  behind.variance_ratio = Eigen::VectorXd::Constant(behind.model.size(), 0.1);
+  CHECK(pose_lateness(behind, 0.05).mean == doctest::Approx(0.02));
+}
+
 TEST_CASE("where the offset is not identified, or the poses come first, they are not late") {
   MotionPosterior posterior = *with_offset_std(0.003);
   posterior.variance_ratio[2] = 0.6;

@@ -100,8 +100,10 @@ def timing_words(
             how = f"; {wheels_advice}" if wheels_advice else ""
             sentences.append(f"Wheel speeds in the log would{how}.")
     if motion.clock_offset:
+        held = "" if motion.dynamics else ", less half of their period, as they are held until the next"
+        from_sampling = "One within half" if motion.dynamics else "A negative one below"
         sentences.append(
-            "clock_offset is how much later poses are stamped than wheel speeds. A negative one below the "
+            f"clock_offset is how much later poses are stamped than wheel speeds{held}. {from_sampling} the "
             "period of the wheel speeds comes from their sampling, not from a clock."
         )
         if "clock_offset" in unknown:

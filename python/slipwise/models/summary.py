@@ -47,7 +47,7 @@ def summarise(model: Model) -> Summary:
         *share_sentences(model),
         *response_sentences(model, parameters),
         *_limit_sentences(parameters),
-        *_offset_sentences(parameters, model.content.range.wheel_step),
+        *_offset_sentences(parameters, model),
         *sensor_sentences(model),
     ]
     prediction = tuple(_prediction_sentences(model))
@@ -64,13 +64,15 @@ def _limit_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:
     return [f"Actuator limits of {'; '.join(parts)}."] if parts else []
 
 
-def _offset_sentences(parameters: tuple[PhysicalParameter, ...], wheel_step: float) -> list[str]:
+def _offset_sentences(parameters: tuple[PhysicalParameter, ...], model: Model) -> list[str]:
     found = {p.name: p for p in parameters if p.identified and abs(p.value) > SIGNIFICANT * p.std}
     sentences = []
     clock = found.get("clock_offset")
-    if clock is not None and not _explained(clock, wheel_step):
-        order = "later" if clock.value > 0.0 else "earlier"
-        seconds = estimate_text(abs(clock.value), clock.std)
+    step = model.content.range.wheel_step
+    late = clock.value + (step / 2.0 if model.content.input == "wheel" else 0.0) if clock is not None else 0.0
+    if clock is not None and abs(late) > step / 2.0 + SIGNIFICANT * clock.std:
+        order = "later" if late > 0.0 else "earlier"
+        seconds = estimate_text(abs(late), math.hypot(clock.std, step / math.sqrt(12.0)))
         sentences.append(f"Poses are stamped {seconds} s {order} than wheel speeds of the same time.")
     parts = [
         f"{estimate_text(abs(place.value), place.std)} m {plus if place.value > 0.0 else minus}"
@@ -84,11 +86,6 @@ def _offset_sentences(parameters: tuple[PhysicalParameter, ...], wheel_step: flo
         degrees = estimate_text(math.degrees(yaw.value), math.degrees(yaw.std))
         sentences.append(f"The pose sensor is turned by {degrees} deg.")
     return sentences
-
-
-def _explained(clock: PhysicalParameter, wheel_step: float) -> bool:
-    """Say whether an offset is how wheel speeds are held: half a step of samples, a whole one of means."""
-    return -wheel_step - SIGNIFICANT * clock.std <= clock.value <= 0.0
 
 
 def _prediction_sentences(model: Model) -> list[str]:

@@ -41,6 +41,14 @@ def test_all_is_found_in_cascade_and_as_surely_as_stated() -> None:
     assert np.median([f.std / f.prior_std for f in actuator]) < 0.05
 
 
+@pytest.mark.parametrize("rate", [10.0, 50.0])
+def test_a_wheel_speed_that_holds_until_the_next_is_no_delay(rate: float) -> None:
+    found = {f.name: f for f in from_wheels_too(0, rate=rate)}
+    delays = [found[f"log_delay_{channel}"] for channel in ("v", "omega")]
+    assert all(f.std < 0.1 for f in delays), delays
+    assert not far_off([[*delays, found["clock_offset"]]])
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_a_dull_drive_says_what_it_does_not_show(seed: int) -> None:
     assert set(NOT_SHOWN) <= set(dull(seed))

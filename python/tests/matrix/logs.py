@@ -43,7 +43,7 @@ def commands(*names: str) -> Sensor:
 
 
 def odometry(*names: str, std: float = 0.004) -> Sensor:
-    """The twist of the wheels at 20 Hz, the mean until the next."""
+    """The twist of the wheels at 20 Hz, the mean over the time nearest to each stamp."""
 
     def sensed(_robot: Robot, driven: Driven, random: Random) -> Stream:
         t = every(driven, 20.0)

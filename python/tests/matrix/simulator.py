@@ -93,10 +93,10 @@ class Driven:
         return np.minimum(np.round(np.asarray(t) / STEP).astype(np.int64), len(self.t) - 1)
 
     def mean_wheels(self, t: Floats) -> Floats:
-        """Return the twist of the wheels from each stamp until the next, [N, 3]."""
+        """Return the mean twist of the wheels over the time nearest to each stamp, [N, 3]."""
         reached = np.vstack((np.zeros(3), np.cumsum(self.wheels, axis=0)))
-        first = self.at(t)
-        last = np.append(first[1:], first[-1] + 1)
+        amid = self.at(t[:-1] + 0.5 * np.diff(t))
+        first, last = np.insert(amid, 0, self.at(t[0])), np.append(amid, self.at(t[-1]) + 1)
         return (reached[last] - reached[first]) / np.maximum(last - first, 1)[:, None]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 from matrix.learned import Learned
-from matrix.situations import HITCH, SLIP
+from matrix.situations import HELD, HITCH, SLIP
 
 from slipwise.dynamics import Dynamics, Parameter, State, learn_dynamics, load_dynamics
 
@@ -43,6 +43,7 @@ def dynamics(learned: Learned) -> None:
     table = np.genfromtxt(learned.log, delimiter=",", names=True)
     drive, seen = np.isfinite(table["odo_v"]), np.isfinite(table["hitch"])
     inputs = np.column_stack([table[name][drive] for name in ("t", "odo_v", "odo_omega")])
+    inputs[:, 0] -= HELD  # learning holds them from their stamp on
     measured = np.column_stack([table[name][seen] for name in ("t", "x", "y", "yaw", "hitch")])
     found = learn_dynamics(TRAILER, inputs, measured)
     for name, truth in zip(NAMES, (*HITCH, *SLIP.values()), strict=True):

@@ -18,8 +18,9 @@ namespace slipwise {
 struct WheelSegment {
   InputHistory commands;
   InputHistory wheels;
-  double start;  ///< [s] in input stamps
-  double end;    ///< [s]
+  double start;           ///< [s] in input stamps
+  double end;             ///< [s]
+  double known_at = end;  ///< [s] when the last of it was measured
 };
 
 /// Wheel speeds are what the actuator gives out and what the slip acts on: each part is learned from much more than the

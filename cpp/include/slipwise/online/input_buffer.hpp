@@ -32,7 +32,8 @@ struct HeldMotion {
 /// How a slice of the history begins, and what of it is kept.
 enum class SliceKind : std::uint8_t {
   Commands,  ///< before the first one the robot is at rest; repeats are thinned
-  Wheels     ///< wheel speeds may begin while the robot drives: the first one holds for a while before it
+  Wheels,    ///< wheel speeds may begin while the robot drives: the first one holds for a while before it
+  Measured   ///< the same, but each stands for the time nearest to its stamp: held, it would pass for a delay
 };
 
 /// The samples of the last seconds of a run. Each is held until the next one, and unknown once it is older than
@@ -61,6 +62,9 @@ class InputBuffer {
   std::optional<BodyTwist> known_at(double t) const;
   /// The twist held at `t` [s], however old it is; nothing before the first sample.
   std::optional<BodyTwist> held_at(double t) const;
+  /// From when on the sample held at `t` [s] was measured: it stands for the time nearest to its stamp. There must be
+  /// one.
+  double measured_since(double t) const;
   /// When the input becomes unknown first in [start, end] [s]; `start` where it is unknown there already.
   std::optional<double> unknown_since(double start, double end) const;
   /// The first sample later than `t` [s].

@@ -213,6 +213,7 @@ class SegmentStream {
   /// What commands ask for over [start, end] and `back` [s] before, by what was known of a car at `known` [s].
   InputHistory commanded(const Segment& over, double back, double known,
                          const std::vector<InputSample>& future = {}) const;
+  InputHistory wheels(double start, double end) const;
   const InputBuffer& given() const { return car_ && settings_.from_commands ? car_->given() : inputs(); }
   void set_actuator_state(Segment& segment) const;
   void set_turn(Segment& segment) const;

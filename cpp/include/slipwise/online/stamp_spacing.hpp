@@ -21,9 +21,9 @@ struct PoseLateness {
 std::shared_ptr<const MotionPosterior> supported(std::shared_ptr<const MotionPosterior> posterior, double seconds,
                                                  std::size_t segments);
 
-/// By the learned clock offset. Wheel speeds `seconds` apart are learned as held, half of that late, and where between
-/// two of them the wheels changed is not known. Nothing where the offset is not identified, or where the poses come
-/// first: nothing is stamped before it happens.
+/// By the learned clock offset. Wheel speeds `seconds` apart that drive a model are held, half of that late; where
+/// between two of them the wheels changed is not known. Nothing where the offset is not identified, or where the poses
+/// come first: nothing is stamped before it happens.
 PoseLateness pose_lateness(const MotionPosterior& posterior, double seconds);
 
 }  // namespace slipwise
