@@ -39,23 +39,24 @@ void bind_limit_kinds(nb::module_& m) {
   nb::class_<AxisLimits> limits(m, "AxisLimits", "Dead-band, saturation and slew rates of one axis of the actuator.");
   limits.def(
       "__init__",
-      [](AxisLimits* self, double dead_band, double saturation, double slew_rate_up, double slew_rate_down) {
-        new (self) AxisLimits{dead_band, saturation, slew_rate_up, slew_rate_down};
+      [](AxisLimits* self, double dead_band, double saturation, double slew_rate_up, double slew_rate_down,
+         double slew_rate_lag) {
+        new (self) AxisLimits{dead_band, saturation, slew_rate_up, slew_rate_down, slew_rate_lag};
       },
       "dead_band"_a = AxisLimits{}.dead_band, "saturation"_a = AxisLimits{}.saturation,
-      "slew_rate_up"_a = AxisLimits{}.slew_rate_up, "slew_rate_down"_a = AxisLimits{}.slew_rate_down);
+      "slew_rate_up"_a = AxisLimits{}.slew_rate_up, "slew_rate_down"_a = AxisLimits{}.slew_rate_down,
+      "slew_rate_lag"_a = AxisLimits{}.slew_rate_lag);
   nb::enum_<LimitKind> kinds(m, "LimitKind");
-  for (const LimitKind kind : kLimitKinds) {
-    kinds.value(row_of(kind).name, kind);
-  }
-  for (const LimitRow& row : kLimits) {
-    limits.def_ro(row.name, row.value);
+  for (std::size_t kind = 0; kind < kLimits.size(); ++kind) {
+    kinds.value(kLimits.at(kind).name, static_cast<LimitKind>(kind));
+    limits.def_ro(kLimits.at(kind).name, kLimits.at(kind).value);
   }
   nb::class_<LimitRow>(m, "LimitRow", "A kind of limit that an axis of the drive may have.")
       .def_ro("name", &LimitRow::name)
       .def_prop_ro(
           "absent", [](const LimitRow& row) { return AxisLimits{}.*row.value; }, "What limits nothing.")
-      .def_ro("of_change", &LimitRow::of_change, "Its unit is that of the axis over seconds.")
+      .def_ro("per_second", &LimitRow::per_second,
+              "Its unit is that of the axis over seconds to this power; of -1, seconds alone.")
       .def_ro("words", &LimitRow::words, "Before the number in a sentence.");
   m.def("limit_rows", [] { return std::vector(kLimits.begin(), kLimits.end()); }, "In the order of `LimitKind`.");
 }

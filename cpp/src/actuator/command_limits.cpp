@@ -106,6 +106,9 @@ InputHistory limited_pieces(const InputHistory& commands, CommandLimiter limiter
     }
     if (later(next, now)) {
       push(now, limiter.target());
+      if (std::isfinite(next)) {
+        limiter.mean_over(next - now, next - now);
+      }
     }
   }
   return {std::move(t), std::move(twist)};

@@ -9,6 +9,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "slipwise/actuator/first_order_lag.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -97,13 +99,17 @@ RampLimits<Scalar> ramp_limits(const AxisLimits& limits, double piece) {
   };
   const double slew_rate_up = limits.slew_rate_up * piece;
   const double slew_rate_down = limits.slew_rate_down * piece;
+  const double closes = LagDecay(limits.slew_rate_lag, piece).gone;
   return {.dead_band = number(limits.dead_band),
           .saturation = number(limits.saturation),
           .slew_rate_up = number(slew_rate_up),
           .slew_rate_down = number(slew_rate_down),
           .per_slew_up = number(1.0 / slew_rate_up),
           .per_slew_down = number(1.0 / slew_rate_down),
-          .ramps = limits_rates(limits)};
+          .closes = number(closes),
+          .per_closes = number(1.0 / closes),
+          .ramps = limits_rates(limits),
+          .lags = limits.slew_rate_lag > 0.0};
 }
 
 template <typename Scalar>

@@ -66,6 +66,24 @@ TEST_CASE("an axis without rates is there at once, and one that only brakes slow
   CHECK(coasting.seconds_to(-1.0) == doctest::Approx(2.0));
 }
 
+TEST_CASE("behind a lag an axis is given no more than its rate asks, and its target once it is near") {
+  AxisRamp ramp = ramp_at({.slew_rate_up = 0.5, .slew_rate_down = 2.0, .slew_rate_lag = 0.3}, 0.0, 1.0);
+  CHECK(ramp.ramps_to(1.0));
+  CHECK_FALSE(ramp.ramps_to(0.15));  // 0.5 m/s^2 is what the lag alone makes of that
+  ramp.mean_over(0.1, 0.1);
+  CHECK(ramp.state() == doctest::Approx(0.05));
+  ramp.mean_over(0.1, 0.04);  // the rest is cut off: a lag goes most of the way at first
+  CHECK(ramp.state() > 0.05 + 0.04 * 0.5);
+  ramp.place(0.9);
+  CHECK(ramp.seconds_to(1.0) == 0.0);
+  CHECK(ramp.mean_over(0.3, 0.3) == 1.0);
+  CHECK(ramp.state() == doctest::Approx(1.0 - 0.1 * std::exp(-1.0)));
+  ramp.place(0.1);
+  ramp.aim(-1.0);  // 0.05 s to zero, and 0.05 s at 0.5 m/s^2
+  ramp.mean_over(0.1, 0.1);
+  CHECK(ramp.state() == doctest::Approx(-0.025));
+}
+
 TEST_CASE("after the seconds that it says are left, a drive gives its target") {
   const CommandLimits limits{.speed = {.slew_rate_up = 1.0, .slew_rate_down = 2.0},
                              .yaw_rate = {.slew_rate_up = 1.5, .slew_rate_down = 1.5},

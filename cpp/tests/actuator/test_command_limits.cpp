@@ -2,6 +2,7 @@
 // Limits of the drive: what passes, how ramps run, and that nothing comes from later commands.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -111,6 +112,31 @@ TEST_CASE("what comes out until some moment does not depend on later commands") 
   for (double t = 0.0; t < 0.71; t += 0.003) {
     CHECK(whole.at(t) == early.at(t));
   }
+}
+
+TEST_CASE("behind a lag the rates are those of the drive itself, whose lag is the same") {
+  const double lag = 0.3, up = 0.5, down = 0.9;
+  const CommandLimits limits{.speed = {.slew_rate_up = up, .slew_rate_down = down, .slew_rate_lag = lag}};
+  const std::vector<double> t{0.0, 2.5, 3.1, 6.0, 9.0}, v{1.0, -0.8, 0.1, 0.0, -2.0};
+  const std::vector<double> nothing(t.size(), 0.0);
+  const InputHistory commands(t, v, nothing, nothing);
+  const InputHistory limited = limited_inputs(commands, limits);
+  std::vector<double> times;
+  for (int k = 0; k < 600; ++k) {
+    times.push_back(0.02 * k);
+  }
+  const ActuatorOutput drive = actuator_output(limited, {.time_constant_v = lag}, times, {});
+  double speed = 0.0, worst = 0.0;
+  constexpr double kStep = 1e-4;
+  for (std::size_t k = 1; k < times.size(); ++k) {
+    for (double now = times[k - 1] + 0.5 * kStep; now < times[k]; now += kStep) {
+      const double gap = commands.at(now).v - speed;
+      const double most = gap * speed < 0.0 ? down : up;
+      speed += kStep * std::clamp(gap / lag, -most, most);
+    }
+    worst = std::max(worst, std::abs(drive.v[k] - speed));
+  }
+  CHECK(worst < 5e-4);
 }
 
 TEST_CASE("limits that make no sense are refused with the axis and what to give") {

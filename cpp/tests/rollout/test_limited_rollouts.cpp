@@ -33,6 +33,7 @@ std::vector<SampleLimits> sample_limits() {
       {"dead-band and top", {.speed = {.dead_band = 0.5, .saturation = 1.0}, .yaw_rate = {.saturation = 0.5}}},
       {"acceleration alone", {.speed = {.slew_rate_up = 0.7}}},
       {"speed and yaw rate", {.speed = speed, .yaw_rate = turn}},
+      {"sides behind a lag", {.side = {.slew_rate_up = 0.6, .slew_rate_down = 1.1, .slew_rate_lag = 0.2}}},
       {"sides", {.side = side, .wheel_separation = 0.6, .gain_v = 1.1, .gain_omega = 0.9}},
       {"all",
        {.speed = speed, .yaw_rate = turn, .side = side, .wheel_separation = 0.6, .gain_v = 1.1, .gain_omega = 0.9}}};

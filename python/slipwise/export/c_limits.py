@@ -20,7 +20,7 @@ def limits(model: Model) -> str:
     of_drive = model.limits or _core.CommandLimits(_NONE, _NONE, _NONE, 1.0, 1.0, 1.0)
     axes = {"SPEED": of_drive.speed, "YAW_RATE": of_drive.yaw_rate, "SIDE": of_drive.side}
     lines = [
-        "/* Limits of the drive, before delay and lag: dead-band, saturation, slew rates up and down. */",
+        "/* Limits of the drive, before delay and lag: dead-band, saturation, slew rates, their lag. */",
         *_said(model),
     ]
     lines += [f"#define SLIPWISE_LIMITS_{name} {_axis(axis)}" for name, axis in axes.items()]

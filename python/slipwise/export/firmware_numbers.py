@@ -216,6 +216,9 @@ class FirmwareNumbers:
         return self._of_commands("dead band", "dead_band")
 
     def _throttle_rate(self) -> Answer:
+        limits = self._model.limits_section
+        if limits is not None and limits.speed.slew_rate_lag is not None:
+            return "the drive limits its acceleration behind its lag, not that of its commands"
         return self._of_commands("limit of acceleration", "slew_rate_up")
 
     def _first_wheel_radius(self) -> Answer:

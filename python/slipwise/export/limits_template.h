@@ -1,9 +1,9 @@
 /* Limits of one lane, the same for both signs. */
 typedef struct {
-  slipwise_real dead_band, top, acceleration, braking;
+  slipwise_real dead_band, top, acceleration, braking, lag; /* with a lag, rates are of what it makes of the commands */
 } slipwise_lane;
 
-#define SLIPWISE_LANE_OF(a, b, c, d) {SLIPWISE_R(a), SLIPWISE_R(b), SLIPWISE_R(c), SLIPWISE_R(d)}
+#define SLIPWISE_LANE_OF(a, b, c, d, e) {SLIPWISE_R(a), SLIPWISE_R(b), SLIPWISE_R(c), SLIPWISE_R(d), SLIPWISE_R(e)}
 #define SLIPWISE_LANE(limits) SLIPWISE_LANE_OF(limits)
 static const slipwise_lane slipwise_lanes[3] = {
     SLIPWISE_LANE(SLIPWISE_LIMITS_SPEED),
@@ -29,8 +29,17 @@ static inline slipwise_real slipwise_ramp_rate(const slipwise_lane *lane, slipwi
 }
 
 static inline slipwise_real slipwise_ramp_seconds(const slipwise_lane *lane, slipwise_real from, slipwise_real to) {
-  if (from * to < 0) { /* through zero: braking first */
-    return SLIPWISE_MATH(fabs)(from) / lane->braking + SLIPWISE_MATH(fabs)(to) / lane->acceleration;
+  const int turns = from * to < 0;
+  if (lane->lag > 0) { /* it ramps where the lag alone would be too quick */
+    const slipwise_real least = lane->braking < lane->acceleration ? lane->braking : lane->acceleration;
+    const slipwise_real rate = turns ? least : slipwise_ramp_rate(lane, from, to);
+    if (SLIPWISE_MATH(fabs)(to - from) <= rate * lane->lag) {
+      return 0;
+    }
+  }
+  if (turns) { /* through zero: braking first */
+    return SLIPWISE_MATH(fabs)(from) / lane->braking + SLIPWISE_MATH(fabs)(to) / lane->acceleration +
+           lane->lag * SLIPWISE_MATH(log1p)(SLIPWISE_MATH(fabs)(from / to));
   }
   return SLIPWISE_MATH(fabs)(to - from) / slipwise_ramp_rate(lane, from, to);
 }
@@ -65,11 +74,36 @@ static inline slipwise_real slipwise_ramp_follow(const slipwise_lane *lane, slip
   return integral + ramp->state * seconds;
 }
 
+/* What of the target a lag may be given for a piece, so that it changes no quicker than the rates. */
+static inline slipwise_real slipwise_kept_near(const slipwise_lane *lane, const slipwise_ramp *ramp,
+                                               slipwise_real piece) {
+  const slipwise_real closes = -SLIPWISE_MATH(expm1)(-piece / lane->lag);
+  const slipwise_real size = SLIPWISE_MATH(fabs)(ramp->state);
+  const slipwise_real wanted = SLIPWISE_MATH(fabs)(ramp->target - ramp->state) * closes;
+  const int turns = ramp->state * ramp->target < 0;
+  const slipwise_real most =
+      piece * (turns ? lane->braking : slipwise_ramp_rate(lane, ramp->state, ramp->target));
+  slipwise_real moved = wanted < most ? wanted : most;
+  if (turns && moved > size) { /* and from zero on for the rest of the piece */
+    const slipwise_real rest = size + lane->acceleration * piece * (1 - size / moved);
+    moved = moved < rest ? moved : rest;
+  }
+  if (moved >= wanted) {
+    return ramp->target;
+  }
+  return ramp->state + (ramp->target > ramp->state ? moved : -moved) / closes;
+}
+
 /* The mean over a piece, of which `taken` seconds pass. */
 static inline slipwise_real slipwise_ramp_mean(const slipwise_lane *lane, slipwise_ramp *ramp, slipwise_real command,
                                                slipwise_real piece, slipwise_real taken) {
   slipwise_ramp whole;
   ramp->target = slipwise_limited(lane, command);
+  if (lane->lag > 0) {
+    const slipwise_real kept = slipwise_kept_near(lane, ramp, piece);
+    ramp->state += (ramp->state - kept) * SLIPWISE_MATH(expm1)(-taken / lane->lag);
+    return kept;
+  }
   whole = *ramp;
   slipwise_ramp_follow(lane, ramp, taken);
   return slipwise_ramp_follow(lane, &whole, piece) / piece;
@@ -245,6 +279,10 @@ static inline void slipwise_next_piece(slipwise_cursor *cursor) {
     }
   }
   cursor->held = slipwise_goal(cursor);
+  if (left < SLIPWISE_R(INFINITY)) { /* what lags goes on */
+    cursor->piece = left;
+    slipwise_piece_mean(cursor, left);
+  }
   cursor->change = slipwise_told_next(cursor);
 }
 

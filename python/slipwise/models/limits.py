@@ -20,7 +20,7 @@ _CORE_AXES = dict(
 class LearnedLimit(Section):
     """One limit of the drive, the same for both signs."""
 
-    value: Positive  # [m/s or rad/s; rates m/s^2 or rad/s^2]
+    value: Positive  # [m/s or rad/s; rates m/s^2 or rad/s^2; s]
     std: NotNegative
 
 
@@ -31,6 +31,7 @@ class AxisLimitsSection(Section):
     saturation: LearnedLimit | None = None  # no faster
     slew_rate_up: LearnedLimit | None = None  # away from zero no quicker
     slew_rate_down: LearnedLimit | None = None  # towards zero no quicker
+    slew_rate_lag: LearnedLimit | None = None  # both of the drive behind this lag, not of its commands
 
 
 class LimitsSection(Section):
@@ -71,7 +72,7 @@ def limit_rows(section: LimitsSection) -> list[Parameter]:
         for kind, row in KINDS.items():
             limit: LearnedLimit | None = getattr(getattr(section, axis), kind)
             if limit is not None:
-                unit = _AXIS_UNITS[axis] + ("^2" if row.of_change else "")
+                unit = "s" if row.per_second < 0 else _AXIS_UNITS[axis] + ("^2" if row.per_second else "")
                 rows.append(_row(f"limits.{axis}.{kind}", unit, limit.value, limit.std))
     if any(row.name.startswith("limits.side") for row in rows):
         rows.append(_row(SEPARATION, "m", section.wheel_separation, section.wheel_separation_std))

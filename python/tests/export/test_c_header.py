@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
@@ -254,10 +254,13 @@ def test_header_goes_from_a_measured_speed_to_the_command_and_not_beyond(
 
 
 @pytest.mark.parametrize("number", ["float", "double"])
+@pytest.mark.parametrize("lag", [{}, {"slew_rate_lag": 0.2}], ids=["in front", "behind a lag"])
 @pytest.mark.parametrize("lanes", ["speed", "yaw_rate", "side", "all"])
-def test_header_puts_commands_behind_limits(compiled: Compile, lanes: str, number: str) -> None:
+def test_header_puts_commands_behind_limits(
+    compiled: Compile, lanes: str, lag: Mapping[str, float], number: str
+) -> None:
     made = replace(named("full-linear-6", lon__V=-0.05, lat__w=0.1, ang__w=-0.4), response=lanes == "all")
-    limits = {lane: kinds for lane, kinds in LIMITS.items() if lanes in (lane, "all")}
+    limits = {lane: {**kinds, **lag} for lane, kinds in LIMITS.items() if lanes in (lane, "all")}
     commands = commands_of(seed=21)
     windows = [Window(4.0, 9.0), Window(0.0, 5.0), Window(3.0, 8.0, drive=(0.4, -0.3)), Window(5.0, 5.03)]
     for offset in (None, -0.05):

@@ -3,16 +3,18 @@
 // (derivations/actuator.md).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "slipwise/actuator/axis_limit.hpp"
 #include "slipwise/actuator/command_limits.hpp"
+#include "slipwise/actuator/first_order_lag.hpp"
 
 namespace slipwise {
 
-/// The set speed of one axis, which follows its target as fast as it may. A history holds thousands of pieces, so its
-/// steps are inline.
+/// The set speed of one axis, which follows its target as fast as it may, or the axis itself behind its lag. A
+/// history holds thousands of pieces, so its steps are inline.
 class AxisRamp {
  public:
   explicit AxisRamp(const AxisLimits& limits) : limits_(limits) {}
@@ -34,15 +36,23 @@ class AxisRamp {
   void place(double state) { state_ = state; }
   double state() const { return state_; }
   double target() const { return target_; }
-  /// Until it is there; 0 where it goes at once [s].
+  /// No ramp takes longer; 0 where it goes at once [s].
   double seconds_to(double target) const {
+    if (limits_.slew_rate_lag > 0.0 && !ramps_to(target)) {
+      return 0.0;
+    }
     const bool turns = state_ * target < 0.0;
-    return turns ? std::abs(state_) / limits_.slew_rate_down + std::abs(target) / limits_.slew_rate_up
+    return turns ? std::abs(state_) / limits_.slew_rate_down + std::abs(target) / limits_.slew_rate_up +
+                       limits_.slew_rate_lag * std::log1p(std::abs(state_ / target))
                  : std::abs(target - state_) / rate_towards(target);
   }
   /// Whether that takes any time.
   bool ramps_to(double target) const {
     const bool turns = state_ * target < 0.0;
+    if (const double lag = limits_.slew_rate_lag; lag > 0.0) {
+      const double rate = turns ? std::min(limits_.slew_rate_down, limits_.slew_rate_up) : rate_towards(target);
+      return std::abs(target - state_) > rate * lag;
+    }
     return state_ != target && (turns ? std::isfinite(limits_.slew_rate_down) || std::isfinite(limits_.slew_rate_up)
                                       : std::isfinite(rate_towards(target)));
   }
@@ -50,6 +60,11 @@ class AxisRamp {
   double mean_over(double piece, double taken) {
     if (state_ == target_) {
       return state_;
+    }
+    if (limits_.slew_rate_lag > 0.0) {
+      const double kept = kept_near(piece);
+      state_ = lag_output(state_, kept, limits_.slew_rate_lag, taken);
+      return kept;
     }
     if (taken == piece) {
       return follow(piece) / piece;
@@ -68,9 +83,22 @@ class AxisRamp {
 
   /// Goes where no rate limits it, in no time.
   void jump() {
-    while (state_ != target_ && std::isinf(rate_towards(next_goal()))) {
+    while (limits_.slew_rate_lag == 0.0 && state_ != target_ && std::isinf(rate_towards(next_goal()))) {
       state_ = next_goal();
     }
+  }
+
+  /// What of the target a lag may be given for a piece, so that it changes no quicker than the rates.
+  double kept_near(double piece) const {
+    const double closes = LagDecay(limits_.slew_rate_lag, piece).gone;
+    const double gap = target_ - state_, wanted = std::abs(gap) * closes;
+    const bool turns = state_ * target_ < 0.0;
+    double moved = std::min(wanted, piece * (turns ? limits_.slew_rate_down : rate_towards(target_)));
+    if (turns && moved > std::abs(state_)) {  // and from zero on for the rest of the piece
+      const double rest = piece * (1.0 - std::abs(state_) / moved);
+      moved = std::min(moved, std::abs(state_) + limits_.slew_rate_up * rest);
+    }
+    return moved < wanted ? state_ + std::copysign(moved / closes, gap) : target_;
   }
 
   /// Goes on for `seconds`; returns the integral.

@@ -16,6 +16,9 @@ struct AxisLimits {
   double saturation = std::numeric_limits<double>::infinity();      ///< no faster [m/s or rad/s]
   double slew_rate_up = std::numeric_limits<double>::infinity();    ///< away from zero no quicker [m/s^2 or rad/s^2]
   double slew_rate_down = std::numeric_limits<double>::infinity();  ///< towards zero no quicker [m/s^2 or rad/s^2]
+  /// Zero: the slew rates are of the commands. Else they are of the drive itself, behind a lag of this time constant,
+  /// and the commands are kept as near to it as that asks [s].
+  double slew_rate_lag = 0.0;
 
   auto operator<=>(const AxisLimits&) const = default;
 };

@@ -53,7 +53,9 @@ struct RampLimits {
   Scalar dead_band, saturation;
   Scalar slew_rate_up, slew_rate_down;  ///< over a piece of the period
   Scalar per_slew_up, per_slew_down;    ///< one over these; zero where they are not limited
+  Scalar closes, per_closes;            ///< of a gap, what the lag of the rates closes over a piece; one over that
   bool ramps;                           ///< some rate is limited
+  bool lags;                            ///< the rates are behind a lag
 };
 
 /// Limits of the commands, and of the two sides behind them.

@@ -19,10 +19,32 @@ SLIPWISE_LANES Pair<Half> aim(const RampLimits<Scalar>& limits, const Pair<Half>
   return {aim(limits, command.low), aim(limits, command.high)};
 }
 
+/// The same of rates behind a lag, as AxisRamp has it; what its lag is given for a piece is returned.
+template <typename Scalar, class Vector>
+SLIPWISE_LANES Vector kept_near(const RampLimits<Scalar>& limits, const Vector& target, Vector& state) {
+  const Vector zero{};
+  const Vector one = zero + static_cast<Scalar>(1);
+  const Vector up = target < state ? -one : one;
+  const Vector from = state * up;
+  const Vector to = target * up;
+  const Vector wanted = (to - from) * limits.closes;
+  const Vector rate = from < zero ? zero + limits.slew_rate_down : zero + limits.slew_rate_up;
+  const Vector braked = smaller(wanted, rate);
+  const Vector rest = one + from / braked;
+  const Vector turned = smaller(braked, rest * limits.slew_rate_up - from);
+  const Vector moved = from < zero ? (from + braked > zero ? turned : braked) : braked;
+  const Vector kept = moved < wanted ? from + moved * limits.per_closes : to;
+  state = moved < wanted ? (from + moved) * up : (from + wanted) * up;
+  return kept * up;
+}
+
 /// One piece of the ramp towards `target`; `state` moves on, and the mean over the piece is returned. Mirrored so that
 /// it goes up, a ramp is braking until zero and acceleration from there on; times are counted in pieces.
 template <typename Scalar, class Vector>
 SLIPWISE_LANES Vector ramp_piece(const RampLimits<Scalar>& limits, const Vector& target, Vector& state) {
+  if (limits.lags) {
+    return kept_near(limits, target, state);
+  }
   const Vector zero{};
   const Vector one = zero + static_cast<Scalar>(1);
   const auto half = static_cast<Scalar>(0.5);
