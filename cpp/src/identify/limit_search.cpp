@@ -12,6 +12,7 @@
 
 #include "slipwise/identify/axis_range.hpp"
 #include "slipwise/identify/dead_band_search.hpp"
+#include "slipwise/identify/limit_candidates.hpp"
 
 namespace slipwise {
 namespace {
@@ -25,17 +26,8 @@ constexpr double kPolished = 1e-5;    // of -2 log likelihood; a hundredth of a 
 constexpr double kWorthMoving = 2.0;  // of -2 log likelihood
 constexpr std::array kSeparationFactors{0.98, 1.02};
 constexpr double kPruningBound = 50.0;  // the same; polishing does not gain as much
-constexpr std::array kDeadBandQuantiles{0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6};
-constexpr std::array kSaturationQuantiles{0.5, 0.7, 0.8, 0.9, 0.95, 0.98};
-constexpr std::array kRateFactors{0.3, 0.5, 0.8, 1.2, 2.0, 3.5, 6.0};
 constexpr double kLagFactor = 0.4;
-constexpr double kHighest = 0.98;  // quantile of speeds that is about a top
-constexpr double kNominal = 0.9;   // quantile of rates
 constexpr double kAnyLoss = std::numeric_limits<double>::infinity();
-
-double quantile(const std::vector<double>& sorted, double fraction) {
-  return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1))];
-}
 
 int count_of(const CommandLimits& limits) {
   int count = 0;
@@ -87,6 +79,17 @@ class Search {
     return gains(left, one_by_one) ? left : one_by_one;
   }
 
+  /// Rates may be of the commands, or of the drive itself behind its lag: whichever explains more.
+  ScoredActuator in_other_order(const ScoredActuator& best) {
+    LimitedActuator drive = best.drive;
+    drive.rates_behind_lag = !drive.rates_behind_lag;
+    const ScoredActuator other = run(drive);
+    const int more = count_of(other.drive.limits) - count_of(best.drive.limits);
+    return best.loss.total - other.loss.total > kWorthMoving && gain_of(other, best) > least_gain_ * std::max(more, 0)
+               ? other
+               : best;
+  }
+
   std::vector<FoundLimit> found(const ScoredActuator& best) const {
     const LimitedActuatorFit::Spread spread = fit_.spread(best.drive);
     std::vector<FoundLimit> result;
@@ -102,6 +105,9 @@ class Search {
         result.push_back({axis, kind, limit_of(limits, kind), std, gain_of(best, without(best, axis, kind))});
       }
     }
+    if (best.drive.rates_behind_lag) {
+      add_lags(best, spread, result);
+    }
     return result;
   }
 
@@ -112,19 +118,24 @@ class Search {
     return gain_of(one, other) > least_gain_ * more;
   }
 
+  void add_lags(const ScoredActuator& best, const LimitedActuatorFit::Spread& spread,
+                std::vector<FoundLimit>& found) const {
+    LimitedActuator in_front = best.drive;
+    in_front.rates_behind_lag = false;
+    const double gain = gain_of(best, refined(in_front, kLongRefinement));
+    const auto& [v, omega] = spread.lag_std;
+    const std::array stds{v, omega, 0.5 * (v + omega)};
+    const CommandLimits acting = acting_limits(best.drive);
+    for (std::size_t k = 0; k < kLimitedAxes.size(); ++k) {
+      if (const double lag = axis_of(acting, kLimitedAxes.at(k)).slew_rate_lag; lag > 0.0) {
+        found.push_back({kLimitedAxes.at(k), LimitKind::SlewRateLag, lag, stds.at(k), gain});
+      }
+    }
+  }
+
   LimitedActuator with_all(LimitedActuator drive) const {
     for (const LimitedAxis axis : {LimitedAxis::Speed, LimitedAxis::YawRate}) {
-      const AxisRange range = axis_range(records_, drive.limits, axis);
-      if (range.commands.empty() || range.speeds.empty() || range.rates.empty()) {
-        continue;
-      }
-      AxisLimits& limits = axis_of(drive.limits, axis);
-      if (const double saturation = quantile(range.speeds, kHighest); saturation > 0.0) {
-        limits.saturation = saturation;
-      }
-      if (const double nominal = quantile(range.rates, kNominal); nominal > 0.0) {
-        limits.slew_rate_up = limits.slew_rate_down = nominal;
-      }
+      limit_all(axis_of(drive.limits, axis), axis_range(records_, drive.limits, axis));
     }
     drive.actuator.time_constant_v *= kLagFactor;
     drive.actuator.time_constant_omega *= kLagFactor;
@@ -159,12 +170,14 @@ class Search {
 
   /// The best limit, or pair of rates, to add; empty if none gains enough.
   std::optional<ScoredActuator> with_one_more(const ScoredActuator& now) const {
+    // In the other order the rest was looked for before.
+    const bool rates_alone = now.drive.rates_behind_lag && !limits_rates(now.drive.limits);
     std::vector<ScoredActuator> trials;
     for (const LimitedAxis axis : kLimitedAxes) {
       const AxisRange range = axis_range(records_, now.drive.limits, axis);
       const AxisLimits& limits = axis_of(now.drive.limits, axis);
       for (const LimitKind kind : kLimitKinds) {
-        if (!limits_anything(limits, kind)) {
+        if (!limits_anything(limits, kind) && !(rates_alone && row_of(kind).per_second == 0)) {
           add(trials, profile(now, axis, {kind}, range));
         }
       }
@@ -198,7 +211,7 @@ class Search {
   std::optional<ScoredActuator> profile(const ScoredActuator& now, LimitedAxis axis,
                                         const std::vector<LimitKind>& kinds, const AxisRange& range) const {
     std::optional<ScoredActuator> best;
-    for (const double value : candidates(kinds.front(), range)) {
+    for (const double value : limit_candidates(kinds.front(), range)) {
       LimitedActuator drive = now.drive;
       for (const LimitKind kind : kinds) {
         limit_of(axis_of(drive.limits, axis), kind) = value;
@@ -215,7 +228,10 @@ class Search {
 
   static std::vector<LimitedActuator> beside(LimitKind kind, const LimitedActuator& drive) {
     LimitedActuator other = drive;
-    if (kind == LimitKind::SlewRateUp || kind == LimitKind::SlewRateDown) {
+    if (row_of(kind).per_second > 0) {
+      if (drive.rates_behind_lag) {  // what takes no place of the lag leaves it as it is
+        return {drive};
+      }
       other.actuator.time_constant_v *= kLagFactor;
       other.actuator.time_constant_omega *= kLagFactor;
       return {drive, other};
@@ -225,31 +241,6 @@ class Search {
       return {drive, other};
     }
     return {drive};
-  }
-
-  static std::vector<double> candidates(LimitKind kind, const AxisRange& range) {
-    std::vector<double> values;
-    if (range.commands.size() < 2 || range.speeds.empty() || range.rates.empty()) {
-      return values;
-    }
-    if (kind == LimitKind::DeadBand) {
-      for (const double fraction : kDeadBandQuantiles) {
-        const auto at = static_cast<std::size_t>(fraction * static_cast<double>(range.commands.size() - 2));
-        values.push_back(0.5 * (range.commands[at].speed + range.commands[at + 1].speed));
-      }
-    } else if (kind == LimitKind::Saturation) {
-      for (const double fraction : kSaturationQuantiles) {
-        const double saturation = quantile(range.speeds, fraction);
-        if (saturation > 0.0 && saturation < range.commands.back().speed) {
-          values.push_back(saturation);
-        }
-      }
-    } else if (const double nominal = quantile(range.rates, kNominal); nominal > 0.0) {
-      for (const double factor : kRateFactors) {
-        values.push_back(factor * nominal);
-      }
-    }
-    return values;
   }
 
   /// Finds every dead-band between the commands next to it, and refines the rest with it.
@@ -354,6 +345,9 @@ LimitedActuator baseline_drive(const LimitedActuatorFit& fit) {
 LimitedActuator with_gain_at_sides(LimitedActuator drive) {
   drive.limits.gain_v *= std::exchange(drive.actuator.gain_v, 1.0);
   drive.limits.gain_omega *= std::exchange(drive.actuator.gain_omega, 1.0);
+  for (const LimitedAxis axis : kLimitedAxes) {
+    axis_of(drive.limits, axis).slew_rate_lag = 0.0;  // `acting_limits` has it
+  }
   return drive;
 }
 
@@ -369,6 +363,7 @@ LimitSearch find_limits(std::span<const WheelRecord> records, const PriorSetting
   Search search(records, fit, settings.least_gain);
   const LimitedActuator plain = baseline_drive(fit);
   ScoredActuator best = search.or_all_at_once(search.run(before ? with_gain_at_sides(*before) : plain), plain);
+  best = search.in_other_order(best);
   if (!unlimited(best.drive.limits)) {  // what is found hangs on no step that the search just did not take
     best = fit.refine(best.drive, kLongRefinement, std::numeric_limits<double>::infinity(), kPolished);
   }
@@ -384,6 +379,7 @@ LimitSearch find_limits(std::span<const WheelRecord> records, const PriorSetting
         commands.empty() ? AxisReach{} : AxisReach{commands.front().speed, commands.back().speed, range.step};
   }
   CommandLimits& limits = result.drive.limits;
+  limits = acting_limits(best.drive);
   if (!limits_sides(limits)) {  // the actuator says the gain, and the wheel_separation is not needed
     limits.wheel_separation = wheel_separation;
     result.drive.actuator.gain_v = std::exchange(limits.gain_v, 1.0);

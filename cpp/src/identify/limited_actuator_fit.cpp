@@ -96,6 +96,17 @@ double speed_of_side(const CommandLimits& limits, const SideCommand& command) {
   return std::abs(limits.gain_v * command.v + 0.5 * limits.gain_omega * command.omega * limits.wheel_separation);
 }
 
+CommandLimits acting_limits(const LimitedActuator& drive) {
+  CommandLimits limits = drive.limits;
+  const double v = drive.actuator.time_constant_v, omega = drive.actuator.time_constant_omega;
+  const std::array lags{v, omega, 0.5 * (v + omega)};  // both sides move the drive ahead and turn it
+  for (std::size_t k = 0; k < kLimitedAxes.size(); ++k) {
+    AxisLimits& axis = axis_of(limits, kLimitedAxes.at(k));
+    axis.slew_rate_lag = drive.rates_behind_lag && limits_rates(axis) ? lags.at(k) : 0.0;
+  }
+  return limits;
+}
+
 LimitedActuatorFit::LimitedActuatorFit(std::span<const WheelRecord> records, const PriorSettings& prior,
                                        double wheel_separation)
     : records_(records), prior_(prior), wheel_separation_(wheel_separation) {
@@ -114,8 +125,8 @@ LimitedActuator LimitedActuatorFit::start() const {
 
 LimitedActuatorFit::AxisActuator LimitedActuatorFit::channel_drive(const LimitedActuator& drive, int c) {
   const ActuatorAxis axis = axis_of(drive.actuator, c);
-  return {axis_of(drive.limits, axis_of_channel(c)), gain_at_sides(drive.limits, c), axis.response.time_constant,
-          axis.delay};
+  return {axis_of(acting_limits(drive), axis_of_channel(c)), gain_at_sides(drive.limits, c),
+          axis.response.time_constant, axis.delay};
 }
 
 const std::vector<InputHistory>& LimitedActuatorFit::inputs_of(const CommandLimits& limits, int c) const {
@@ -153,8 +164,11 @@ void LimitedActuatorFit::put_errors(const LimitedActuator& drive, std::span<cons
 
 LimitedActuatorFit::FittedChannel LimitedActuatorFit::fitted_channel(const LimitedActuator& drive, int c) const {
   const auto rows = static_cast<Eigen::Index>(samples_);
-  FittedChannel fit{
-      .inputs = inputs_of(drive.limits, c), .error = Eigen::VectorXd(rows), .scale = 0.0, .weight = {}, .loss = {}};
+  FittedChannel fit{.inputs = inputs_of(acting_limits(drive), c),
+                    .error = Eigen::VectorXd(rows),
+                    .scale = 0.0,
+                    .weight = {},
+                    .loss = {}};
   put_errors(drive, fit.inputs, c, fit.error);
   fit.scale = likeliest_scale(fit.error);
   const Eigen::ArrayXd scaled = fit.error.array() / fit.scale;
@@ -210,13 +224,13 @@ LimitedActuatorFit::Slopes LimitedActuatorFit::derivatives(const FittedActuator&
     LimitParameters moved = p;
     moved[parameter] += kDifference;
     const LimitedActuator other = with_parameters(drive, moved);
-    const bool behind = acts_behind(parameter, drive.limits);
+    const bool behind = acts_behind(parameter, drive);
     for (std::size_t c = 0; c < derivatives.size(); ++c) {
       const int channel = static_cast<int>(c);
-      if (acts_on(parameter, drive.limits, channel)) {
+      if (acts_on(parameter, drive, channel)) {
         const FittedChannel& now = at.channels.at(c);
         auto derivative = derivatives.at(c).col(k);
-        put_errors(other, behind ? now.inputs : inputs_of(other.limits, channel), channel, derivative);
+        put_errors(other, behind ? now.inputs : inputs_of(acting_limits(other), channel), channel, derivative);
         derivative = (now.error - derivative) / kDifference;
       }
     }
@@ -274,7 +288,8 @@ namespace {
 /// Standard deviations from the covariance of free parameters, and from variances that are larger where need be.
 LimitedActuatorFit::Spread spread_of(const std::vector<int>& free, const LimitParameters& p,
                                      const Eigen::MatrixXd& unlike, const Eigen::VectorXd& variance) {
-  LimitedActuatorFit::Spread result{.std = {}, .wheel_separation_std = 0.0, .to_sides = Eigen::Matrix3d::Zero()};
+  LimitedActuatorFit::Spread result{
+      .std = {}, .lag_std = {}, .wheel_separation_std = 0.0, .to_sides = Eigen::Matrix3d::Zero()};
   constexpr std::array kToSides{0, 1, kSeparationPlace};
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
@@ -287,7 +302,9 @@ LimitedActuatorFit::Spread spread_of(const std::vector<int>& free, const LimitPa
   for (Eigen::Index k = 0; k < variance.size(); ++k) {
     const int parameter = free[static_cast<std::size_t>(k)];
     const double std = std::sqrt(std::max(variance[k], 0.0)) * std::exp(p[parameter]);
-    if (parameter == kSeparationPlace) {
+    if (parameter == 2 || parameter == 3) {
+      result.lag_std.at(static_cast<std::size_t>(parameter) - 2) = std;
+    } else if (parameter == kSeparationPlace) {
       result.wheel_separation_std = std;
     } else if (parameter >= kFirstLimit) {
       const auto place = static_cast<std::size_t>(parameter - kFirstLimit);

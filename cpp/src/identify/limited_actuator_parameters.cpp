@@ -70,16 +70,19 @@ std::vector<int> free_parameters(const LimitedActuator& drive) {
   return free;
 }
 
-bool acts_behind(int parameter, const CommandLimits& limits) {
+bool acts_behind(int parameter, const LimitedActuator& drive) {
   const bool gain = parameter < 2;  // in front of the sides, where these are limited
-  return parameter < kActuatorPart && !(gain && limits_sides(limits));
+  const bool lag = parameter == 2 || parameter == 3;
+  return parameter < kActuatorPart && !(gain && limits_sides(drive.limits)) &&
+         !(lag && drive.rates_behind_lag && limits_rates(drive.limits));
 }
 
-bool acts_on(int parameter, const CommandLimits& limits, int channel) {
-  if (acts_behind(parameter, limits)) {
+bool acts_on(int parameter, const LimitedActuator& drive, int channel) {
+  const bool sides = limits_sides(drive.limits);
+  if (acts_behind(parameter, drive) || (parameter < kActuatorPart && !sides)) {
     return parameter % 2 == channel;
   }
-  return limits_sides(limits) || (parameter - kFirstLimit) / kLimitsPerAxis == channel;
+  return sides || (parameter - kFirstLimit) / kLimitsPerAxis == channel;
 }
 
 PriorPull prior_pull(int parameter, const LimitParameters& p, const PriorSettings& prior, double wheel_separation) {

@@ -33,7 +33,7 @@ HypothesisSettings joint_alone(HypothesisSettings settings) {
 /// front of them, which is the same to another wheel_separation and other limits: g_v s = g_v v + g_omega omega w' / 2
 /// asks s = v + omega w / 2 of a side, where w = w' g_omega / g_v.
 LimitSearch with_gain_behind_sides(LimitSearch search) {
-  auto& [limits, actuator, edge] = search.drive;
+  auto& [limits, actuator, behind, edge] = search.drive;
   if (!limits_sides(limits)) {
     return search;
   }
@@ -47,7 +47,7 @@ LimitSearch with_gain_behind_sides(LimitSearch search) {
     limit_of(limits.side, kind) /= actuator.gain_v;
   }
   for (FoundLimit& found : search.found) {
-    if (found.axis == LimitedAxis::Side) {
+    if (found.axis == LimitedAxis::Side && found.kind != LimitKind::SlewRateLag) {
       found.value /= actuator.gain_v;
       found.std /= actuator.gain_v;
     }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "limited_records.hpp"
@@ -64,6 +65,37 @@ TEST_CASE("a drive without limits shows none, and its delay and lag are found") 
   CHECK(result.found.empty());
   CHECK(unlimited(result.drive.limits));
   CHECK(result.drive.actuator.time_constant_v + result.drive.actuator.delay_v == doctest::Approx(0.56).epsilon(0.15));
+}
+
+TEST_CASE("rates of the drive itself, behind its lag, are found as such, and not too quick") {
+  for (const double lag : {0.1, 0.3, 0.6}) {
+    CAPTURE(lag);
+    const ActuatorModel chain{.time_constant_v = lag, .time_constant_omega = 0.2, .delay_v = 0.15, .delay_omega = 0.1};
+    const std::vector<WheelRecord> records{tests::rated_record(chain, {.up = 0.5, .down = 0.8}, 17)};
+    const LimitSearch result = find_limits(records, {}, 1.0, {});
+    REQUIRE(result.found.size() == 3);
+    for (const auto& [kind, truth] : {std::pair{LimitKind::SlewRateUp, 0.5}, std::pair{LimitKind::SlewRateDown, 0.8},
+                                      std::pair{LimitKind::SlewRateLag, lag}}) {
+      const FoundLimit* limit = found(result, LimitedAxis::Speed, kind);
+      REQUIRE(limit != nullptr);
+      CHECK(std::abs(limit->value - truth) <= 3.0 * limit->std);
+      CHECK(limit->std < (kind == LimitKind::SlewRateLag ? 0.15 : 0.02) * truth);
+    }
+    CHECK(result.drive.limits.speed.slew_rate_lag == result.drive.actuator.time_constant_v);
+    const LimitSearch again = find_limits(records, {}, 1.0, {}, result.drive);
+    REQUIRE(again.found.size() == 3);
+    CHECK(found(again, LimitedAxis::Speed, LimitKind::SlewRateLag)->value == doctest::Approx(lag).epsilon(0.1));
+  }
+}
+
+TEST_CASE("rates of the commands, in front of the lag, stay so") {
+  CommandLimits limits = kFree;
+  limits.speed = {.slew_rate_up = 0.5, .slew_rate_down = 0.8};
+  const LimitSearch result = search(limits, 18);
+  REQUIRE(result.found.size() == 2);
+  CHECK(result.drive.limits.speed.slew_rate_lag == 0.0);
+  CHECK(result.drive.limits.speed.slew_rate_up == doctest::Approx(0.5).epsilon(0.02));
+  CHECK(result.drive.limits.speed.slew_rate_down == doctest::Approx(0.8).epsilon(0.02));
 }
 
 TEST_CASE("what a search found is found again from there") {

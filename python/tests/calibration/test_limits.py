@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from limited_drives import CHAIN, FREE, SIDES, TRACK, search, track_of, wheels_behind
+from limited_drives import CHAIN, FREE, NOISE, SIDES, TRACK, search, track_of, wheels_behind
 from sample_models import make_model, named
 
 from slipwise import _core
@@ -22,6 +22,7 @@ from slipwise.logs import open_log
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
 from slipwise.models import Model, load_model
 from slipwise.models.limits import AxisLimitsSection, LearnedLimit, LimitsSection
+from slipwise.models.summary import summarise
 from slipwise.planning import Controller, ReferencePath, Start, rollout, sample_futures
 from slipwise.planning.mppi import learned_motions
 from slipwise.prediction import predict
@@ -175,6 +176,43 @@ def test_limits_are_learned_from_commands_and_poses_alone() -> None:
         assert abs(known[f"log_{name}"].value - np.log(truth)) < 3.0 * known[f"log_{name}"].std
     for name, truth in (("delay_v", CHAIN.delay_v + held), ("delay_omega", CHAIN.delay_omega + held)):
         assert abs(known[f"log_{name}"].value - np.log(truth)) < 3.0 * known[f"log_{name}"].std
+
+
+def rated_wheels(commands: Inputs, chain: _core.ActuatorModel, up: float, down: float) -> Inputs:
+    """What wheels do whose speed itself cannot change more quickly, behind its lag, in steps of 1 ms."""
+    drive = _core.actuator_output(track_of(commands), chain, commands.t, _core.BodyTwist(0.0, 0.0, 0.0))
+    step, period, speed = 1e-3, 0.05, 0.0
+    fine = np.arange(round(float(commands.t[-1]) / step) + 1) * step - chain.delay_v
+    asked = np.where(fine < 0.0, 0.0, commands.v[np.maximum((fine / period + 1e-6).astype(int), 0)])
+    speeds = [speed]
+    for command in asked[1:]:
+        most = down if (command - speed) * speed < 0.0 else up
+        speed += step * float(np.clip((command - speed) / chain.time_constant_v, -most, most))
+        speeds.append(speed)
+    v = np.array(speeds)[np.rint(commands.t / step).astype(int)]
+    noise = np.random.default_rng(5).normal(size=(2, len(v)))
+    return replace(
+        commands, v=v + NOISE[0] * noise[0], omega=np.ascontiguousarray(drive[:, 1]) + NOISE[1] * noise[1]
+    )
+
+
+@pytest.mark.parametrize("wheels_logged", [True, False])
+@pytest.mark.parametrize("lag", [0.3, 0.6])
+def test_rates_of_the_drive_itself_are_found_behind_its_lag(
+    lag: float, wheels_logged: bool, tmp_path: Path
+) -> None:
+    commands = steps_drive(3, SECONDS)
+    log = driven(commands, rated_wheels(commands, _core.ActuatorModel(lag, 0.2, 0.15, 0.1, 0.0), 0.5, 0.8))
+    learned = calibrate(log if wheels_logged else without_wheels(log), input="command").model
+    read = load_model(learned.save(tmp_path / "m.yaml"))
+    assert read.limits_section is not None
+    found = read.limits_section.speed
+    for limit, truth in ((found.slew_rate_up, 0.5), (found.slew_rate_down, 0.8), (found.slew_rate_lag, lag)):
+        assert limit is not None
+        assert abs(limit.value - truth) < 3.0 * limit.std
+    assert found.slew_rate_up is not None
+    assert found.slew_rate_up.value == pytest.approx(0.5, rel=0.02 if wheels_logged else 0.1)
+    assert "behind a lag of" in " ".join(summarise(read).sentences)
 
 
 def test_a_drive_without_limits_shows_none_in_its_poses() -> None:

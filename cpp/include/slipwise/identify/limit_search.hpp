@@ -17,11 +17,11 @@ struct LimitSearchSettings {
   double least_gain = 20.0;
 };
 
-/// A limit that the data show.
+/// A limit that the data show; the lag of slew rates is one too, which gains over having these in front of the lag.
 struct FoundLimit {
   LimitedAxis axis;
   LimitKind kind;
-  double value;  ///< [m/s, rad/s, m/s^2 or rad/s^2]
+  double value;  ///< [m/s, rad/s, m/s^2, rad/s^2 or s]
   double std;    ///< of the value
   double gain;   ///< of having it over not having it, in -2 log likelihood
 };

@@ -48,12 +48,16 @@ double speed_of_side(const CommandLimits& limits, const SideCommand& command);
 /// Limits and the actuator behind them: delay and lag per channel. Its gain stands with the limits, in front of the
 /// sides.
 struct LimitedActuator {
-  CommandLimits limits;
+  CommandLimits limits;  ///< of the slew rates' lag, see `acting_limits`
   ActuatorModel actuator;
+  bool rates_behind_lag = false;  ///< slew rates are of what the lag makes of the commands
   /// The fastest command that the sides' dead-band blocks and the slowest that it lets through: while wheel_separation
   /// and gains are fitted, it stays between them.
   std::optional<std::array<SideCommand, 2>> edge = {};
 };
+
+/// The limits with the lag of their slew rates, which is that of the actuator where they are behind it.
+CommandLimits acting_limits(const LimitedActuator& drive);
 
 /// How well a drive explains the records: -2 log likelihood of Student t residuals whose scale is the likeliest.
 struct ActuatorLoss {
@@ -85,6 +89,7 @@ class LimitedActuatorFit {
   /// that are alike or of unequal size; zero for what limits nothing, and for dead-bands.
   struct Spread {
     std::array<std::array<double, kLimitKinds.size()>, kLimitedAxes.size()> std;  ///< by axis and kind
+    std::array<double, 2> lag_std;                                                ///< [s] of speed and yaw rate
     double wheel_separation_std;                                                  ///< [m]
     Eigen::Matrix3d to_sides;  ///< covariance of gain of speed, gain of yaw rate and log separation
   };
@@ -114,7 +119,7 @@ class LimitedActuatorFit {
   /// How fast each channel's errors fall with each free parameter [samples, parameters].
   using Slopes = std::array<Eigen::MatrixXd, 2>;
   static AxisActuator channel_drive(const LimitedActuator& drive, int c);
-  /// The commands of each record that channel `c` follows.
+  /// The commands of each record that channel `c` follows, behind limits that act.
   const std::vector<InputHistory>& inputs_of(const CommandLimits& limits, int c) const;
   /// Measured less explained in channel `c`, which follows the `inputs`.
   void put_errors(const LimitedActuator& drive, std::span<const InputHistory> inputs, int c,

@@ -24,9 +24,9 @@ LimitedActuator with_parameters(LimitedActuator drive, const LimitParameters& p)
 std::vector<int> free_parameters(const LimitedActuator& drive);
 
 /// Whether a parameter leaves the limited commands as they are.
-bool acts_behind(int parameter, const CommandLimits& limits);
+bool acts_behind(int parameter, const LimitedActuator& drive);
 /// Whether a parameter has an effect on the speed (channel 0) or on the yaw rate (channel 1) of the drive.
-bool acts_on(int parameter, const CommandLimits& limits, int channel);
+bool acts_on(int parameter, const LimitedActuator& drive, int channel);
 
 inline constexpr double kSeparationLogStd = 0.5;  ///< of the separation of the sides about the one given
 
