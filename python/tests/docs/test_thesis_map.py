@@ -4,9 +4,9 @@
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from importlib import import_module
 
-import pytest
 from python.tests.docs.pages import ROOT, code_words, table_rows
 
 PAGE = ROOT / "docs/thesis-map.md"
@@ -91,17 +91,22 @@ def test_cpp_names_are_declared_in_their_headers() -> None:
     assert not gone
 
 
-def key_is_written(key: str) -> bool:
-    """Whether the reproduction's sources write this key, whole or put together of two strings."""
+@cache
+def written_texts() -> tuple[frozenset[str], tuple[str, ...]]:
+    """Return the strings of the reproduction's sources, and the starts of those put together of two."""
     sources = sorted((ROOT / "packages/slipwise-thesis/slipwise_thesis").glob("*.py"))
     nodes = [node for path in sources for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
     texts = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
     joined = [node.values[0] for node in nodes if isinstance(node, ast.JoinedStr) and len(node.values) == 2]
-    starts = [str(first.value) for first in joined if isinstance(first, ast.Constant)]
+    return frozenset(texts), tuple(str(first.value) for first in joined if isinstance(first, ast.Constant))
+
+
+def key_is_written(key: str) -> bool:
+    """Whether the reproduction's sources write this key, whole or put together of two strings."""
+    texts, starts = written_texts()
     return key in texts or any(key.startswith(s) and s and key.removeprefix(s) in texts for s in starts)
 
 
-@pytest.mark.slow
 def test_every_figure_named_is_made_under_the_number_of_its_row() -> None:
     named = [(key, row[0]) for row in ROWS for key in MADE.findall(row[2])]
     assert len(named) > 25
