@@ -177,7 +177,7 @@ class Search {
       const AxisRange range = axis_range(records_, now.drive.limits, axis);
       const AxisLimits& limits = axis_of(now.drive.limits, axis);
       for (const LimitKind kind : kLimitKinds) {
-        if (!limits_anything(limits, kind) && !(rates_alone && row_of(kind).per_second == 0)) {
+        if (!limits_anything(limits, kind) && (!rates_alone || row_of(kind).per_second != 0)) {
           add(trials, profile(now, axis, {kind}, range));
         }
       }
