@@ -26,7 +26,7 @@ def refuse_unwritable(*outputs: Path | None, inputs: Iterable[Path | None] = ())
         inputs: the files and folders that it reads.
 
     Raises:
-        OutputError: a path is a folder, or a device or pipe that a file would replace; its folder is
+        OutputError: a path is a folder, or `-`, a device or pipe that a file would replace; its folder is
             read-only, full, or below a file; it is one of the inputs, or two outputs are one file.
     """
     named = [path for path in outputs if path is not None]
@@ -52,7 +52,7 @@ def _refuse_unwritable(path: Path) -> None:
         place = written_place(path)
         if place.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        if place.exists() and not place.is_file():
+        if str(path) == "-" or (place.exists() and not place.is_file()):
             raise OutputError("not a file", where=str(path), advice="name a file, or use `--json -` to print")
         with tempfile.TemporaryFile(dir=_existing(place.absolute().parent)):
             pass

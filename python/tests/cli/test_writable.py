@@ -72,6 +72,12 @@ def test_a_file_of_a_bag_folder_is_an_input(folder: Path) -> None:
         refuse_unwritable(Path("bag/bag_0.db3"), inputs=[Path("bag")])
 
 
+def test_a_dash_is_no_name_of_a_file(folder: Path) -> None:
+    with pytest.raises(OutputError, match=r"not a file \(-\): name a file, or use `--json -` to print"):
+        refuse_unwritable(Path("-"))
+    assert not left_in(folder)
+
+
 @pytest.mark.parametrize("second", ["a.json", "./a.json", "link.json"])
 def test_two_outputs_of_one_name_are_refused_before_they_are_there(folder: Path, second: str) -> None:
     Path("link.json").symlink_to("a.json")
