@@ -302,8 +302,8 @@ LimitedActuatorFit::Spread spread_of(const std::vector<int>& free, const LimitPa
   for (Eigen::Index k = 0; k < variance.size(); ++k) {
     const int parameter = free[static_cast<std::size_t>(k)];
     const double std = std::sqrt(std::max(variance[k], 0.0)) * std::exp(p[parameter]);
-    if (parameter == 2 || parameter == 3) {
-      result.lag_std.at(static_cast<std::size_t>(parameter) - 2) = std;
+    if (is_lag(parameter)) {
+      result.lag_std.at(static_cast<std::size_t>(parameter - kFirstLag)) = std;
     } else if (parameter == kSeparationPlace) {
       result.wheel_separation_std = std;
     } else if (parameter >= kFirstLimit) {

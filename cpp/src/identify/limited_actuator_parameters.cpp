@@ -70,11 +70,12 @@ std::vector<int> free_parameters(const LimitedActuator& drive) {
   return free;
 }
 
+bool is_lag(int parameter) { return parameter == kFirstLag || parameter == kFirstLag + 1; }
+
 bool acts_behind(int parameter, const LimitedActuator& drive) {
   const bool gain = parameter < 2;  // in front of the sides, where these are limited
-  const bool lag = parameter == 2 || parameter == 3;
   return parameter < kActuatorPart && !(gain && limits_sides(drive.limits)) &&
-         !(lag && drive.rates_behind_lag && limits_rates(drive.limits));
+         !(is_lag(parameter) && drive.rates_behind_lag && limits_rates(drive.limits));
 }
 
 bool acts_on(int parameter, const LimitedActuator& drive, int channel) {

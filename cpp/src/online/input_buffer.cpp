@@ -48,6 +48,11 @@ class Thinned {
 
 double speed(const BodyTwist& twist) { return std::hypot(twist.v, twist.vy); }
 
+/// From when on a sample stands for the time nearest to its stamp.
+double measured_since_of(const std::deque<InputSample>& samples, std::size_t i) {
+  return i == 0 ? samples.front().t : std::midpoint(samples[i - 1].t, samples[i].t);
+}
+
 }  // namespace
 
 void InputBuffer::push(const InputSample& sample) {
@@ -80,10 +85,7 @@ std::size_t InputBuffer::count_until(double t) const {
   return static_cast<std::size_t>(std::distance(samples_.begin(), after));
 }
 
-double InputBuffer::measured_since(double t) const {
-  const std::size_t i = count_until(t) - 1;
-  return i == 0 ? samples_.front().t : std::midpoint(samples_[i - 1].t, samples_[i].t);
-}
+double InputBuffer::measured_since(double t) const { return measured_since_of(samples_, count_until(t) - 1); }
 
 std::optional<BodyTwist> InputBuffer::held_at(double t) const {
   const std::size_t count = count_until(t);
@@ -197,7 +199,7 @@ InputHistory InputBuffer::slice(double start, double end, SliceKind kind,
     if (i == from) {
       sample.t -= sample.t > first_ ? kLongAgo : 0.0;
     } else if (kind == SliceKind::Measured) {
-      sample.t = measured_since(sample.t);
+      sample.t = measured_since_of(samples_, i);
     }
     add(sample);
   }

@@ -50,12 +50,13 @@ class RecentLog:
         kind: type | str = type(sample)
         if isinstance(sample, Pose):
             beside = (sample.roll, sample.pitch, sample.z)
-            row: _Row = (sample.t, sample.x, sample.y, sample.yaw, *map(_or_nan, beside))
-            row = (*row[:3], 0.0 if math.isnan(sample.yaw) else sample.yaw, *row[4:])
+            position = math.isnan(sample.yaw)
+            yaw = 0.0 if position else sample.yaw
+            row: _Row = (sample.t, sample.x, sample.y, yaw, *map(_or_nan, beside))
             if further:
                 kind = sample.source
             else:
-                self._first, self._positions = sample.source, math.isnan(sample.yaw)
+                self._first, self._positions = sample.source, position
         elif isinstance(sample, Command | Wheels):
             row = (sample.t, sample.v, sample.vy, sample.omega)
         elif isinstance(sample, Reading) and sample.column == COLUMN:

@@ -35,6 +35,10 @@ class MotionWindows:
     def __len__(self) -> int:
         return len(self.duration)
 
+    def course_ahead(self, sensor_yaw: float) -> Floats:
+        """Return the course [N] along the heading amid each window, of a sensor that is turned so far."""
+        return np.asarray(self.course - self.start_yaw - 0.5 * self.turn + sensor_yaw)
+
 
 def motion_windows(rows: Floats, input_name: str) -> MotionWindows:
     """Return the windows in which one kind of input is known.

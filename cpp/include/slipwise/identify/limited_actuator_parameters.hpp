@@ -11,6 +11,7 @@ namespace slipwise {
 
 /// In a row: gain, log lag and log delay per channel, log separation, and per axis log saturation and
 /// slew rates.
+inline constexpr int kFirstLag = 2;  ///< of the speed, and behind it that of the yaw rate
 inline constexpr int kActuatorPart = 6;
 inline constexpr int kSeparationPlace = 6;
 inline constexpr int kFirstLimit = 7;
@@ -23,6 +24,8 @@ LimitedActuator with_parameters(LimitedActuator drive, const LimitParameters& p)
 /// The places of the parameters that do anything.
 std::vector<int> free_parameters(const LimitedActuator& drive);
 
+/// Whether a parameter is the lag of a channel.
+bool is_lag(int parameter);
 /// Whether a parameter leaves the limited commands as they are.
 bool acts_behind(int parameter, const LimitedActuator& drive);
 /// Whether a parameter has an effect on the speed (channel 0) or on the yaw rate (channel 1) of the drive.

@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.log import Bools, Log, Poses, Run
-from slipwise.logs.motion_windows import MotionWindows, wrapped
+from slipwise.logs.motion_windows import MotionWindows
 from slipwise.logs.navsat import course_of_path
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def is_course(windows: MotionWindows, sensor_yaw: float = 0.0) -> bool:
     w = windows
     along = (w.distance > _LEAST) & (np.abs(w.forward) > _LEAST) & (np.abs(w.forward) > np.abs(w.sideways))
     along &= (np.abs(w.rotation) < _MOST_TURN) & (np.abs(w.turn) < _MOST_TURN)
-    cosine = np.cos(wrapped(w.course - w.start_yaw - 0.5 * w.turn + sensor_yaw))
+    cosine = np.cos(w.course_ahead(sensor_yaw))
 
     def moves_along(chosen: Bools) -> bool:
         return int(chosen.sum()) >= _ENOUGH and float(cosine[chosen].mean()) > _ALONG

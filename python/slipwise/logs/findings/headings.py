@@ -66,8 +66,7 @@ class TurnedPoses(Check):
         if seen.positions or not _agree(seen.driven):
             return None
         near = (np.abs(w.turn) < MOST_TURN) & (np.abs(w.rotation) < MOST_TURN)
-        ahead = (w.course - w.start_yaw - 0.5 * w.turn + seen.sensor_yaw)[near]
-        way = w.distance[near] * np.exp(1j * ahead)
+        way = (w.distance * np.exp(1j * w.course_ahead(seen.sensor_yaw)))[near]
         columns = np.column_stack((w.forward, w.turn, w.sideways))[near]
         sizes = np.sqrt(np.sum(columns**2, axis=0))
         columns = columns[:, sizes > 0.0] / sizes[sizes > 0.0]

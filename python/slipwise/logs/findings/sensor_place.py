@@ -34,7 +34,7 @@ class SensorOffCentre(Check):
         if seen.positions:
             return None
         near = np.abs(w.turn) < MOST_TURN
-        turn, ahead = w.turn[near], (w.course - w.start_yaw - 0.5 * w.turn + seen.sensor_yaw)[near]
+        turn, ahead = w.turn[near], w.course_ahead(seen.sensor_yaw)[near]
         along, across = w.distance[near] * np.cos(ahead), w.distance[near] * np.sin(ahead)
         square = float(turn @ turn)
         if len(turn) < _ENOUGH or square < _TURNED:
