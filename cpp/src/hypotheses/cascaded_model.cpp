@@ -26,14 +26,6 @@ std::vector<Eigen::Index> range(Eigen::Index first, Eigen::Index last) {
   return places;
 }
 
-/// Copies what one part knows of its parameters.
-void put(MotionPosterior& all, const std::vector<Eigen::Index>& places, const Estimate& part,
-         const Eigen::VectorXd& prior_std) {
-  all.estimate.mean(places) = part.mean;
-  all.estimate.covariance(places, places) = part.covariance;
-  all.prior_std(places) = prior_std;
-}
-
 bool stronger(const SlipChange& a, const SlipChange& b) {
   return std::tuple(a.alarm, a.log_odds) > std::tuple(b.alarm, b.log_odds);
 }
@@ -55,13 +47,25 @@ CascadedModel::CascadedModel(ModelAverage slip, const CausalFilterSettings& sett
   const std::vector<Eigen::Index> others = range(behind, model_.size());
   places_of_slip_.insert(places_of_slip_.end(), others.begin(), others.end());
   places_of_actuator_ = range(slips, behind);
+  restart();
   refresh();
+}
+
+void CascadedModel::restart() {
+  known_slip_ = EstimateHistory(slip_.state().estimate);
+  known_actuator_ = EstimateHistory(actuator_.estimate());
+}
+
+void CascadedModel::start_slip(const DrivenSegment& segment) {
+  slip_.start(segment.inputs, segment.segment);
+  slip_until_ = segment.segment.end;
 }
 
 bool CascadedModel::advance_slip() {
   if (slip_.advance()) {
     return true;
   }
+  known_slip_.keep(slip_until_, slip_.state().estimate);
   refitted_since_ = refitted_since_ || slip_.refitted();
   if (stronger(slip_.change(), change_since_)) {
     change_since_ = slip_.change();
@@ -73,34 +77,47 @@ void CascadedModel::learn_actuator(const WheelSegment& segment) {
   if (const double wheelbase = model_.learned().wheelbase; wheelbase > 0.0) {
     actuator_.learn(channel_inputs(segment.commands, wheelbase), measured_channels(segment.wheels, wheelbase),
                     segment.start, segment.end);
-    return;
+  } else {
+    actuator_.learn(segment.commands, segment.wheels, segment.start, segment.end);
   }
-  actuator_.learn(segment.commands, segment.wheels, segment.start, segment.end);
+  known_actuator_.keep(segment.known_at, actuator_.estimate());
 }
 
 void CascadedModel::begin_with(const Estimate& actuator, const CausalFilterSettings& settings) {
   actuator_.begin_with(actuator, settings);
+  restart();
   refresh();
 }
 
+Estimate CascadedModel::joined(const Estimate& slip, const Estimate& actuator) const {
+  Estimate all{Eigen::VectorXd(model_.size()), Eigen::MatrixXd::Zero(model_.size(), model_.size())};
+  all.mean(places_of_slip_) = slip.mean;
+  all.covariance(places_of_slip_, places_of_slip_) = slip.covariance;
+  all.mean(places_of_actuator_) = actuator.mean;
+  all.covariance(places_of_actuator_, places_of_actuator_) = actuator.covariance;
+  return all;
+}
+
 ScoredSegment CascadedModel::predict(const DrivenSegment& segment) {
-  return score_.score(model_, posterior_->estimate, segment.inputs, segment.segment);
+  const double start = segment.segment.start;
+  const Estimate known = joined(known_slip_.before(start), known_actuator_.before(start));
+  return score_.score(model_, known, segment.inputs, segment.segment);
 }
 
 void CascadedModel::refresh() {
   const AverageState slip = slip_.state();
+  const Estimate actuator = actuator_.estimate();
   const Eigen::Index size = model_.size();
   MotionPosterior all{.model = model_,
-                      .estimate = {Eigen::VectorXd(size), Eigen::MatrixXd::Zero(size, size)},
+                      .estimate = joined(slip.estimate, actuator),
                       .prior_std = Eigen::VectorXd(size),
                       .noise = noise_,
                       .noise_scale = score_.noise_scale(),
                       .variance_ratio = Eigen::VectorXd(size),
                       .basis_weights = slip.weights,
                       .structure = Structure::Cascaded};
-  put(all, places_of_slip_, slip.estimate, slip.prior_std);
-  const Estimate actuator = actuator_.estimate();
-  put(all, places_of_actuator_, actuator, actuator_.prior_std());
+  all.prior_std(places_of_slip_) = slip.prior_std;
+  all.prior_std(places_of_actuator_) = actuator_.prior_std();
   all.variance_ratio(places_of_slip_) = slip.variance_ratio;
   all.variance_ratio(places_of_actuator_) =
       actuator.covariance.diagonal().cwiseQuotient(actuator_.prior_std().cwiseAbs2());

@@ -165,6 +165,7 @@ void MotionHypotheses::begin_with(const KnownBefore& known, double segment_lengt
     }
   }
   if (cascaded_) {
+    cascaded_->restart();
     cascaded_->refresh();
   }
   bank_.know(std::move(surfaces), known.labels);
@@ -231,6 +232,9 @@ Averages MotionHypotheses::averages() {
 std::size_t MotionHypotheses::leader() const { return cascaded_ && tried(Structure::Cascaded) ? kCascaded : kJoint; }
 
 void MotionHypotheses::start_run() {
+  if (cascaded_) {
+    cascaded_->restart();
+  }
   if (settings_.average.surfaces.remember) {
     for (ModelAverage* average : averages()) {
       if (average != nullptr) {
@@ -243,6 +247,7 @@ void MotionHypotheses::start_run() {
 void MotionHypotheses::start_drive(const DisturbanceModel& law, const DriveStart& start) {
   bank_.start_drive(averages(), law, start);
   if (cascaded_) {
+    cascaded_->restart();
     cascaded_->refresh();
   }
 }

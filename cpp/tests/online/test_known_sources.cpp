@@ -72,6 +72,9 @@ TEST_CASE("a worse source that covers the same time changes nothing of what is l
     const Recording run = streamed_robot(1, 90.0);
     const MotionLearner alone = learned(learner_settings(from_commands), run);
     const MotionLearner both = learned(two_sources(from_commands), with_second(run, false));
+    for (std::size_t i = 0; i < kStructures; ++i) {
+      CHECK(both.hypotheses().weights()[i] == doctest::Approx(alone.hypotheses().weights()[i]).epsilon(1e-6));
+    }
     for (const Structure structure : {Structure::Joint, Structure::Cascaded, Structure::Direct}) {
       const auto expected = alone.hypotheses().of(structure);
       const auto found = both.hypotheses().of(structure);

@@ -8,6 +8,7 @@
 
 #include "slipwise/filter/motion_posterior.hpp"
 #include "slipwise/filter/predictive_score.hpp"
+#include "slipwise/hypotheses/estimate_history.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
 #include "slipwise/identify/actuator_filter.hpp"
 #include "slipwise/segment/driven_segment.hpp"
@@ -33,7 +34,7 @@ class CascadedModel {
 
   /// Begins to learn the slip from a segment whose inputs are wheel speeds; `advance_slip` does a piece of it, and says
   /// whether there is more.
-  void start_slip(const DrivenSegment& segment) { slip_.start(segment.inputs, segment.segment); }
+  void start_slip(const DrivenSegment& segment);
   bool advance_slip();
   /// Does a bounded slice of the refits; whether there was any to do.
   bool refit_slice() { return actuator_.refit_slice() || slip_.refit_slice(); }
@@ -42,7 +43,10 @@ class CascadedModel {
   /// Begins with an actuator that was learned before.
   void begin_with(const Estimate& actuator, const CausalFilterSettings& settings);
   const MotionModel& actuator_model() const { return actuator_.model(); }
-  /// Predicts a segment of the commands by what was known when `refresh` was called last.
+  /// Stamps begin again, or the slip is that of another ground: what is known now was known before.
+  void restart();
+  /// Predicts a segment of the commands by what was known when it started, however much was learned meanwhile. Segments
+  /// come in the order of their starts.
   ScoredSegment predict(const DrivenSegment& segment);
   /// Joins the estimates of slip and actuator.
   void refresh();
@@ -65,11 +69,14 @@ class CascadedModel {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.noise_, self.slip_, self.actuator_, self.score_, self.places_of_slip_, self.places_of_actuator_,
-      self.change_);
-    a(self.change_since_, self.refitted_, self.refitted_since_, self.posterior_);
+      self.known_slip_);
+    a(self.known_actuator_, self.slip_until_, self.change_, self.change_since_, self.refitted_, self.refitted_since_,
+      self.posterior_);
   }
 
  private:
+  Estimate joined(const Estimate& slip, const Estimate& actuator) const;
+
   MotionModel model_;
   MotionNoise noise_;
   ModelAverage slip_;
@@ -77,6 +84,9 @@ class CascadedModel {
   PredictiveScore score_;
   std::vector<Eigen::Index> places_of_slip_;  ///< of its parameters among the model's
   std::vector<Eigen::Index> places_of_actuator_;
+  EstimateHistory known_slip_;
+  EstimateHistory known_actuator_;
+  double slip_until_ = 0.0;  ///< [s] end of the segment that the slip is learned from now
   SlipChange change_;
   SlipChange change_since_;
   bool refitted_ = false;
