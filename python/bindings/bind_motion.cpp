@@ -3,10 +3,12 @@
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
+#include "slipwise/filter/base_link_model.hpp"
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/motion/disturbance_model.hpp"
 #include "slipwise/motion/motion_model.hpp"
@@ -148,6 +150,18 @@ void bind_motion(nb::module_& m) {
           "wheelbase"_a,
           "The same of a robot that steers, whose lags and delays act on the curvature of its path [m]; 0: on the yaw "
           "rate.")
+      .def(
+          "of_base_link",
+          [](const MotionModel& model, const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance) {
+            model.check(mean);
+            check_square(covariance, model.size(), "the covariance of a model");
+            KnownModel body = of_base_link(model, {mean, covariance});
+            return std::tuple(std::move(body.estimate.mean), std::move(body.estimate.covariance));
+          },
+          "mean"_a, "covariance"_a,
+          "Mean and covariance [parameters] without the place and clock of the pose sensor; delays to wheel speeds "
+          "that "
+          "are stamped late become those to the motion.")
       .def_prop_ro("wheelbase", [](const MotionModel& model) { return model.learned().wheelbase; })
       .def_prop_ro("basis", &MotionModel::basis)
       .def_prop_ro("dynamics", [](const MotionModel& model) { return model.learned().dynamics; })

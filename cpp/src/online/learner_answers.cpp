@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "slipwise/actuator/measured_start.hpp"
+#include "slipwise/filter/base_link_model.hpp"
 #include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/behind_limits.hpp"
 #include "slipwise/online/learner_times.hpp"
@@ -46,16 +47,12 @@ void check(const std::vector<InputSample>& future, double horizon) {
   }
 }
 
-/// The same of base_link, by the clock of the inputs: without the pose sensor's place and clock, which are the last
-/// parameters.
+/// The same of base_link, by the clock of the inputs.
 MotionPosterior of_base_link(MotionPosterior posterior) {
-  ActuatorParameters learned = posterior.model.learned();
-  learned.sensor_extrinsics = learned.clock_offset = false;
-  posterior.model = MotionModel(posterior.model.basis(), learned);
-  const Eigen::Index kept = posterior.model.size();
-  posterior.estimate.mean.conservativeResize(kept);
-  posterior.estimate.covariance.conservativeResize(kept, kept);
-  posterior.prior_std.conservativeResize(kept);
+  KnownModel body = of_base_link(posterior.model, posterior.estimate);
+  posterior.model = std::move(body.model);
+  posterior.estimate = std::move(body.estimate);
+  posterior.prior_std.conservativeResize(posterior.model.size());
   return posterior;
 }
 

@@ -172,12 +172,15 @@ class Model:
 
     @cached_property
     def body(self) -> Model:
-        """The model of base_link, by the clock of the inputs: without the pose sensor's place and clock."""
+        """The model of base_link, by the clock of the inputs: without the pose sensor's place and clock.
+
+        Where wheel speeds are stamped late, its delays are those to the motion, not to the wheel speeds.
+        """
         if not (self.content.sensor_extrinsics or self.content.clock_offset):
             return self
-        return self.with_table(
-            self.table.without("sensor", "clock"), sensor_extrinsics=False, clock_offset=False
-        )
+        mean, covariance = self.motion.of_base_link(self.vector.values, self.vector.covariance)
+        table = self.table.without("sensor", "clock").with_vector(mean, covariance)
+        return self.with_table(table, sensor_extrinsics=False, clock_offset=False)
 
     @cached_property
     def table(self) -> ParameterTable:

@@ -76,6 +76,15 @@ class ParameterTable:
         )
         return ParameterTable(rows, covariance)
 
+    def with_vector(self, values: Floats, covariance: Floats) -> ParameterTable:
+        """Return the table with another mean and covariance of the rows that the core takes as one vector."""
+        places = [i for i, row in enumerate(self.rows) if row.stage in VECTOR]
+        if np.array_equal(values, self.values[places]):
+            return self
+        all_values, joint = self.values.copy(), self.covariance.copy()
+        all_values[places], joint[np.ix_(places, places)] = values, covariance
+        return self.moved(all_values, joint)
+
     def content(self) -> dict[str, Any]:
         """Return the keys of a model file that hold it."""
         return {"parameters": list(self.rows), "covariance": self.covariance.tolist()}

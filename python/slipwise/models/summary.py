@@ -45,7 +45,7 @@ def summarise(model: Model) -> Summary:
     sentences = [
         *slip_sentences(model, parameters),
         *share_sentences(model),
-        *response_sentences(model, parameters),
+        *response_sentences(model.body, physical_parameters(model.body)),
         *_limit_sentences(parameters),
         *_offset_sentences(parameters, model),
         *sensor_sentences(model),
@@ -71,9 +71,13 @@ def _offset_sentences(parameters: tuple[PhysicalParameter, ...], model: Model) -
     step = model.content.range.wheel_step
     late = clock.value + (step / 2.0 if model.content.input == "wheel" else 0.0) if clock is not None else 0.0
     if clock is not None and abs(late) > step / 2.0 + SIGNIFICANT * clock.std:
-        order = "later" if late > 0.0 else "earlier"
         seconds = estimate_text(abs(late), math.hypot(clock.std, step / math.sqrt(12.0)))
-        sentences.append(f"Poses are stamped {seconds} s {order} than wheel speeds of the same time.")
+        table = "; delays in the table are to them" if model.content.input == "command" else ""
+        sentences.append(
+            f"Poses are stamped {seconds} s later than wheel speeds of the same time."
+            if late > 0.0
+            else f"Wheel speeds are stamped {seconds} s late, as no pose is stamped before it happens{table}."
+        )
     parts = [
         f"{estimate_text(abs(place.value), place.std)} m {plus if place.value > 0.0 else minus}"
         for name, plus, minus in _SENSOR_PLACES

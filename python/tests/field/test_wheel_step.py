@@ -39,7 +39,7 @@ def test_an_offset_is_said_where_it_is_one(tmp_path: Path, period: float, mean: 
     lines = [f"{t:.4f},{rest}" for t, rest in sorted(rows)]
     (tmp_path / "a.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y,yaw", *lines]) + "\n")
     words = said_of(tmp_path / "a.csv")
-    assert "earlier than wheel speeds" not in words
+    assert "Wheel speeds are stamped" not in words
     if late > period:
         assert "later than wheel speeds" in words
 

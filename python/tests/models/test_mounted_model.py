@@ -16,6 +16,7 @@ from slipwise.export.actuator import actuator_of
 from slipwise.export.c_header import c_header
 from slipwise.export.reference_drive import motion_covariance, slip_density
 from slipwise.models import Model, load_model
+from slipwise.models.summary import summarise
 from slipwise.planning import rollout
 from slipwise.prediction import predict
 
@@ -92,3 +93,13 @@ def test_exports_are_those_of_base_link(body: Model, mounted: Model) -> None:
         np.testing.assert_allclose(
             stated(mounted, (0.7, 0.3), 1.0), stated(body, (0.7, 0.3), 1.0), rtol=1e-12
         )
+
+
+def test_delays_to_wheel_speeds_that_are_stamped_late_are_not_those_to_the_motion() -> None:
+    late = make_model(replace(MADE, clock_offset=-0.12))
+    assert late.parameters["delay_v"].value == pytest.approx(0.2)
+    assert actuator_of(late).v.delay.value == pytest.approx(0.08)
+    assert len(late.body.content.parameters) == len(late.content.parameters) - 1
+    said = " ".join(summarise(late).sentences)
+    assert "after 0.08" in said
+    assert "Wheel speeds are stamped 0.120" in said

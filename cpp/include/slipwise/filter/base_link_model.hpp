@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a robot does, without the place and the clock of the sensor that showed it.
+#pragma once
+
+#include "slipwise/filter/estimate.hpp"
+#include "slipwise/motion/motion_model.hpp"
+
+namespace slipwise {
+
+/// A model and what is known of its parameters.
+struct KnownModel {
+  MotionModel model;
+  Estimate estimate;
+};
+
+/// The same of base_link, by the clock of the inputs. No pose is stamped before it happens: where poses are surely
+/// stamped earlier than wheel speeds (the clock offset is below zero by twice its standard deviation), it is the wheel
+/// speeds that are late, and the delays from commands to these are longer than those to the motion, by as much.
+KnownModel of_base_link(const MotionModel& model, const Estimate& estimate);
+
+}  // namespace slipwise
