@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "slipwise/linear/same_stamp.hpp"
 
@@ -13,6 +14,15 @@ namespace {
 constexpr double kInterval = 0.5;   // [s] over which rates are means
 constexpr double kLongest = 1.5;    // [s]; means over longer ones hide what the robot did
 constexpr double kFraction = 0.99;  // of the motion that stayed below a rate
+constexpr double kClose = 0.26;     // [s] between poses whose way is smooth from one to the next
+constexpr double kMilli = 1e3;
+constexpr double kLeast = 2e-3;  // [mm, mrad] counts as no scatter: what is less is not counted by a range
+// By so many standard deviations the greatest hundredth of noisy numbers is too large: of rates, where a drive is near
+// its greatest for a twentieth of its way; of changes, which are mostly small, more.
+constexpr double kRateTooLarge = 1.6;
+constexpr double kChangeTooLarge = 2.5;
+const double kMedianOfTwo = std::sqrt(2.0 * std::numbers::ln2);  // of the length of two normal numbers
+constexpr double kMedianOfOne = 0.6745;                          // of the size of one
 
 /// Counts a rate by the way that it makes: much noise at a standstill is no motion.
 void add_signed(std::array<RobustGreatest, 2>& greatest, double rate, double seconds) {
@@ -31,8 +41,15 @@ void add_change(std::array<RobustGreatest, 2>& greatest, double before, double a
   }
 }
 
-std::array<double, 2> values(const std::array<RobustGreatest, 2>& greatest) {
-  return {greatest[0].value(kFraction), greatest[1].value(kFraction)};
+std::array<double, 2> values(const std::array<RobustGreatest, 2>& greatest, double too_large) {
+  const auto value = [&](const RobustGreatest& each) { return std::max(each.value(kFraction) - too_large, 0.0); };
+  return {value(greatest[0]), value(greatest[1])};
+}
+
+/// Of magnitudes counted in mm or mrad.
+double median(const SpeedRange& range) {
+  const double found = range.quantile(0.5, 0.0);
+  return found > 2.0 * kLeast ? found / kMilli : 0.0;
 }
 
 }  // namespace
@@ -46,7 +63,35 @@ void RobustGreatest::add(double magnitude, double weight) {
 
 double RobustGreatest::value(double fraction) const { return std::min(range_.upper(fraction), greatest_); }
 
+void PoseScatter::push(const MeasuredPose& pose) {
+  const MeasuredPose& before = last_.back();
+  const bool follows = count_ > 0 && before.frame == pose.frame && before.position == pose.position &&
+                       later(pose.t, before.t) && !later(pose.t, before.t + kClose);
+  count_ = follows ? std::min(count_ + 1, last_.size()) : 1;
+  std::ranges::rotate(last_, last_.begin() + 1);
+  last_.back() = pose;
+  if (count_ < last_.size()) {
+    return;
+  }
+  const auto& [a, b, c, d] = last_;  // a parabola through a, c and d goes by b
+  const Eigen::Vector3d weight((b.t - c.t) * (b.t - d.t) / ((a.t - c.t) * (a.t - d.t)),
+                               (b.t - a.t) * (b.t - d.t) / ((c.t - a.t) * (c.t - d.t)),
+                               (b.t - a.t) * (b.t - c.t) / ((d.t - a.t) * (d.t - c.t)));
+  const double scale = kMilli / std::sqrt(1.0 + weight.squaredNorm());
+  const double x = b.x - weight.dot(Eigen::Vector3d(a.x, c.x, d.x));
+  const double y = b.y - weight.dot(Eigen::Vector3d(a.y, c.y, d.y));
+  places_.add(std::max(scale * std::hypot(x, y), kLeast), 1.0);
+  if (!pose.position) {
+    const double yaw = b.yaw - weight.dot(Eigen::Vector3d(a.yaw, c.yaw, d.yaw));
+    yaws_.add(std::max(scale * std::abs(yaw), kLeast), 1.0);
+  }
+}
+
+double PoseScatter::place() const { return median(places_) / kMedianOfTwo; }
+double PoseScatter::yaw() const { return median(yaws_) / kMedianOfOne; }
+
 void BodyRates::push(const MeasuredPose& pose) {
+  scatter_.push(pose);
   if (!from_ || from_->frame != pose.frame || from_->position != pose.position || later(pose.t, from_->t + kLongest)) {
     restart();
     from_ = pose;
@@ -87,10 +132,14 @@ void BodyRates::restart() {
 }
 
 MeasuredRates BodyRates::found() const {
-  return {.speed = values(speed_),
-          .yaw_rate = values(yaw_rate_),
-          .acceleration = values(acceleration_),
-          .turning = values(turning_),
+  const double rate = kRateTooLarge * std::numbers::sqrt2 / kInterval;               // of one pose less another
+  const double change = kChangeTooLarge * std::sqrt(6.0) / (kInterval * kInterval);  // of 1, -2 and 1 of three
+  const double place = scatter_.place();
+  const double yaw = scatter_.yaw();
+  return {.speed = values(speed_, rate * place),
+          .yaw_rate = values(yaw_rate_, rate * yaw),
+          .acceleration = values(acceleration_, change * place),
+          .turning = values(turning_, change * yaw),
           .seconds = seconds_};
 }
 

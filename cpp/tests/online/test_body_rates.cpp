@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <functional>
+#include <random>
 
 #include "slipwise/lie/se2.hpp"
 
@@ -16,6 +17,7 @@ struct Drive {
   double seconds;
   double interval = 0.05;
   Pose2 sensor = {};
+  double noise = 0.0;  ///< [m], and half of it [rad]
 };
 
 /// What poses of a robot that moves by `twist` show.
@@ -23,10 +25,13 @@ MeasuredRates rates_of(const Drive& drive) {
   BodyRates rates(drive.sensor);
   Pose2 base{0.0, 0.0, 0.0};
   double yaw = 0.0;
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0.0, drive.noise > 0.0 ? drive.noise : 1.0);
+  const auto noise = [&](double share) { return drive.noise > 0.0 ? share * normal(random) : 0.0; };
   for (int i = 0; i * drive.interval <= drive.seconds; ++i) {
     const double t = i * drive.interval;
     const Pose2 at = compose(base, drive.sensor);
-    rates.push({.t = t, .x = at.x, .y = at.y, .yaw = yaw + drive.sensor.theta});
+    rates.push({.t = t, .x = at.x + noise(1.0), .y = at.y + noise(1.0), .yaw = yaw + drive.sensor.theta + noise(0.5)});
     const BodyTwist twist = drive.twist(t);
     base = compose(base, exp(Eigen::Vector3d(twist.v, 0.0, twist.omega) * drive.interval));
     yaw += twist.omega * drive.interval;
@@ -73,4 +78,20 @@ TEST_CASE("poses that are too rare show nothing") {
       rates_of({.twist = [](double) { return BodyTwist{.v = 1.0}; }, .seconds = 40.0, .interval = 2.0});
   CHECK(found.seconds == 0.0);
   CHECK(found.speed[1] == 0.0);
+}
+
+TEST_CASE("noise of poses makes the greatest rates no larger, and hides them no more than it must") {
+  const auto twist = [](double t) {
+    const double phase = t - 10.0 * static_cast<int>(t / 10.0);
+    const double v = phase < 2.0 ? 0.5 * phase : std::max(0.0, 1.0 - 0.5 * std::max(phase - 6.0, 0.0));
+    return BodyTwist{.v = v, .omega = 0.6 * v};
+  };
+  for (const double interval : {0.05, 0.1, 0.25}) {
+    CAPTURE(interval);
+    const MeasuredRates found = rates_of({.twist = twist, .seconds = 300.0, .interval = interval, .noise = 0.02});
+    CHECK(found.speed[1] == doctest::Approx(1.0).epsilon(0.05));
+    CHECK(found.yaw_rate[1] == doctest::Approx(0.6).epsilon(0.05));
+    CHECK(found.acceleration[0] < 0.57);
+    CHECK(found.acceleration[0] > 0.35);
+  }
 }

@@ -36,6 +36,7 @@ class MeasuredLimits:
 
     def __init__(self, model: Model, learned: BodyLimits, numbers: LearnedNumbers) -> None:
         self._body = model.content.range.body
+        self._driven_back = model.content.range.speed[0] < 0.0
         self._learned, self._numbers = learned, numbers
 
     def forward(self) -> Limit | str:
@@ -43,8 +44,8 @@ class MeasuredLimits:
         return self._top(lambda body: body.speed[1])
 
     def backward(self) -> Limit | str:
-        """Speed in reverse [m/s]; 0 where the robot never drove so."""
-        return self._top(lambda body: -body.speed[0])
+        """Speed in reverse [m/s]; 0 where it was never driven so, whatever noise of poses shows."""
+        return self._top(lambda body: -body.speed[0] if self._driven_back else 0.0)
 
     def turn(self) -> Limit | str:
         """Yaw rate to the side where it went further [rad/s]."""

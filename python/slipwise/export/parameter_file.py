@@ -93,7 +93,7 @@ def stated(
 ) -> Entry | Kept:
     """Return a learned number as an entry, or why it is none."""
     why = numbers.objection(number)
-    return Kept(key, why) if why else Entry(key, number.value, meaning)
+    return Kept(key, why) if why else Entry(key, number.value + 0.0, meaning)  # no -0.0
 
 
 def for_release(

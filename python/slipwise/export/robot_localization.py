@@ -20,12 +20,12 @@ from slipwise.export.reference_drive import (
 from slipwise.export.ros_tables import ROBOT_LOCALIZATION
 from slipwise.models.body_gains import body_twists
 from slipwise.models.model import Model
-from slipwise.models.schema import MeasuredBody
 
 FREQUENCY = 30.0  # Hz, the filter's default
 #: The filter's own defaults of the process noise, [x, y, z, roll, pitch, yaw and their rates, ax, ay, az].
 DEFAULTS = (0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025, 0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015)
 _X, _Y, _YAW = 0, 1, 5
+UNCLIPPED = "the gain times the largest step of the log: clips nothing"
 
 
 def robot_localization(model: Model, options: ExportOptions) -> ParameterFile:
@@ -158,44 +158,30 @@ def _stamped(stamped: bool | None) -> Entry | Kept:
     return Entry(("stamped_control",), stamped, f"commands are {'TwistStamped' if stamped else 'Twist'}")
 
 
-def _accelerations(model: Model, numbers: LearnedNumbers, axes: tuple[_Axis, _Axis]) -> list[Entry | Kept]:
-    """Return how quickly the robot may follow in the filter: as the poses show it, or the drive's limit."""
-    actuator, body = actuator_of(model), model.content.range.body
+def _accelerations(model: Model, numbers: LearnedNumbers, axes: tuple[_Axis, _Axis]) -> list[Entry]:
+    """Return how quickly the robot may follow in the filter: the drive's limit, or as its gains let it."""
+    actuator, span = actuator_of(model), model.content.range
     slip = slip_gains(numbers, body_twists(model))
     behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
     measured = MeasuredLimits(model, body_limits(model.limits_section, behind, numbers), numbers)
-
-    def shown(place: int) -> tuple[list[Limit], list[Limit]]:
-        rates = (0.0, 0.0) if body is None else _shown(body, place)
-        return tuple(  # type: ignore[return-value]
-            [Limit(numbers.exactly(rate), "as the poses show it")] if rate > 0.0 else [] for rate in rates
-        )
-
+    unclipped = [
+        Limit(numbers.exactly(axis.gain * abs(gain.value) * (max(high, 0.0) - min(low, 0.0))), UNCLIPPED)
+        for axis, gain, (low, high) in zip(axes, behind, (span.speed, span.yaw_rate), strict=True)
+    ]
     found = {
-        "acceleration_limits": (
-            measured.acceleration(*shown(0)[0]),
-            measured.yaw_acceleration(*shown(0)[1]),
-        ),
-        "deceleration_limits": (measured.braking(*shown(1)[0]), measured.yaw_braking(*shown(1)[1])),
+        "acceleration_limits": (measured.acceleration(), measured.yaw_acceleration()),
+        "deceleration_limits": (measured.braking(), measured.yaw_braking()),
     }
-    entries: list[Entry | Kept] = []
-    for name, limits in found.items():
-        used = [limit for limit, axis in zip(limits, axes, strict=True) if not axis.why]
-        problems = [limit for limit in used if isinstance(limit, str)]
-        if problems:
-            entries.append(Kept((name,), problems[0]))
-            continue
-        v, omega = (
-            0.0 if axis.why or isinstance(limit, str) else limit.number.value
-            for limit, axis in zip(limits, axes, strict=True)
-        )
-        sources = "; ".join(dict.fromkeys(limit.source for limit in used if isinstance(limit, Limit)))
+    entries: list[Entry] = []
+    for name, learned in found.items():
+        limits = [
+            free if isinstance(limit, str) else limit for limit, free in zip(learned, unclipped, strict=True)
+        ]
+        v, omega = (0.0 if axis.why else limit.number.value for limit, axis in zip(limits, axes, strict=True))
+        used = [limit.source for limit, axis in zip(limits, axes, strict=True) if not axis.why]
+        sources = "; ".join(dict.fromkeys(used))
         entries.append(Entry((name,), _on_axes(v, omega), f"[m/s^2, rad/s^2] {sources}"))
     return entries
-
-
-def _shown(body: MeasuredBody, place: int) -> tuple[float, float]:
-    return body.acceleration[place], body.yaw_acceleration[place]
 
 
 def _on_axes(v: float, omega: float) -> list[float]:

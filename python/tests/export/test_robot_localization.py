@@ -48,18 +48,18 @@ def test_what_is_not_learned_keeps_the_filters_defaults() -> None:
     assert diagonal[others].tolist() == [DEFAULTS[i] for i in others]
 
 
-def test_gains_are_one_over_the_lag_and_limits_are_what_the_poses_show() -> None:
+def test_gains_are_one_over_the_lag_and_nothing_clips_what_they_ask_for() -> None:
     parameters = written(COMMANDED)
     assert parameters["use_control"] is True
     assert parameters["control_config"] == [True, False, False, False, False, True]
     gains = parameters["acceleration_gains"]
     assert gains == pytest.approx([2.5, 0, 0, 0, 0, 4.0])
     assert parameters["deceleration_gains"] == gains
-    assert parameters["acceleration_limits"] == [0.5, 0, 0, 0, 0, 0.2]
-    assert parameters["deceleration_limits"] == [0.6, 0, 0, 0, 0, 0.4]
-    unmeasured = written(replace(COMMANDED, body=None))
-    assert unmeasured["acceleration_gains"] == gains
-    assert "acceleration_limits" not in unmeasured
+    span = make_model(COMMANDED).content.range
+    steps = [max(high, 0.0) - min(low, 0.0) for low, high in (span.speed, span.yaw_rate)]
+    for name in ("acceleration_limits", "deceleration_limits"):
+        assert parameters[name] == pytest.approx([2.5 * steps[0], 0, 0, 0, 0, 4.0 * steps[1]], rel=1e-3)
+    assert written(replace(COMMANDED, body=None)) == parameters
 
 
 def test_whether_commands_are_stamped_is_said_by_somebody_or_left() -> None:

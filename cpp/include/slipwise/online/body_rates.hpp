@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 
 #include "slipwise/filter/speed_range.hpp"
@@ -40,8 +41,32 @@ struct MeasuredRates {
   double seconds = 0.0;                     ///< between the poses that show them
 };
 
+/// How much poses scatter about a smooth way: each with what the one before it and the two after it say, in constant
+/// memory.
+class PoseScatter {
+ public:
+  void push(const MeasuredPose& pose);
+  /// Standard deviation of an axis [m]; 0 where poses are too rare to tell.
+  double place() const;
+  /// Of the heading [rad].
+  double yaw() const;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.last_, self.count_, self.places_, self.yaws_);
+  }
+
+ private:
+  std::array<MeasuredPose, 4> last_ = {};  ///< the newest last
+  std::size_t count_ = 0;                  ///< of these, that follow each other closely
+  SpeedRange places_;                      ///< [mm]
+  SpeedRange yaws_;                        ///< [mrad]
+};
+
 /// Takes the poses of one run after another, and remembers in constant memory. Rates are means over half a second:
-/// over less, noise of poses hides the motion, so that a quicker change counts as less than it was.
+/// over less, noise of poses hides the motion, so that a quicker change counts as less than it was. What is left of the
+/// noise is taken off the greatest.
 class BodyRates {
  public:
   /// `sensor` is where the pose sensor sits in base_link.
@@ -56,8 +81,8 @@ class BodyRates {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.sensor_, self.from_, self.last_, self.last_seconds_, self.speed_, self.yaw_rate_, self.acceleration_,
-      self.turning_, self.seconds_);
+    a(self.sensor_, self.from_, self.last_, self.last_seconds_, self.scatter_, self.speed_, self.yaw_rate_,
+      self.acceleration_, self.turning_, self.seconds_);
   }
 
  private:
@@ -67,6 +92,7 @@ class BodyRates {
   std::optional<MeasuredPose> from_;  ///< where the next mean begins
   std::optional<BodyTwist> last_;     ///< the mean before it
   double last_seconds_ = 0.0;
+  PoseScatter scatter_;
   std::array<RobustGreatest, 2> speed_;
   std::array<RobustGreatest, 2> yaw_rate_;
   std::array<RobustGreatest, 2> acceleration_;
