@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,7 @@ from slipwise.planning.start import Start
 Floats = NDArray[np.float64]
 
 PERIOD = 0.1  # s, of the rollouts
+TOGETHER = 500  # robots whose paths are held at once
 THREE_SIGMA = 2.782  # normal quantile of 99.73 %, which three standard deviations hold in one dimension
 
 
@@ -29,12 +30,23 @@ class Robots:
 
     def paths(self, commands: Floats) -> Floats:
         """Return where each robot comes under one sequence of commands [K, 3]: [S, 3, K] m, m, rad."""
-        return np.stack([self._rolled(program, commands[None])[:, :, 0] for program in self.programs])
+        paths, roll = np.empty((len(self.programs), 3, len(commands), 1)), self._roller()
+        for program, path in zip(self.programs, paths, strict=True):
+            roll(program, commands[None], path)
+        return paths[..., 0]
 
     def box(self, commands: Floats) -> Floats:
         """Return least and largest x, y [4] m that any robot reaches under a sequence of commands [K, 3]."""
-        boxes, _ = self._boxes(commands[None], np.full(2, np.inf))
-        return np.asarray(boxes[0])
+        box, roll = np.zeros(4), self._roller()  # all begin at the start
+        paths = np.empty((min(TOGETHER, len(self.programs)), 3, len(commands), 1))
+        for first in range(0, len(self.programs), TOGETHER):
+            programs = self.programs[first : first + TOGETHER]
+            for program, path in zip(programs, paths, strict=False):
+                roll(program, commands[None], path)
+            reached = paths[: len(programs), :2]
+            box[::2] = np.minimum(box[::2], reached.min(axis=(0, 2, 3)))
+            box[1::2] = np.maximum(box[1::2], reached.max(axis=(0, 2, 3)))
+        return box
 
     def inside(self, commands: Floats, room: Floats) -> tuple[NDArray[np.bool_], Floats]:
         """Return which sequences of commands [N, K, 3] keep the robots within a room, and where they end.
@@ -49,22 +61,24 @@ class Robots:
         box, end = self._boxes(commands, room)
         return fits(box, room), end
 
-    def _rolled(self, program: _core.RolloutProgram, commands: Floats) -> Floats:
-        """Return the path [3, K, N] from rest in the origin."""
-        rollouts, periods = commands.shape[:2]
-        path = np.empty((3, periods, rollouts))
+    def _roller(self) -> Callable[[_core.RolloutProgram, Floats, Floats], None]:
+        """Return what fills a path [3, K, N] from rest in the origin under commands [N, K, 3]."""
         start = _core.StartList(np.zeros((1, 6)), np.zeros((1, 0, 3)))
         level = _core.instruction_levels()[-1]
-        given = commands if self.sideways else commands[..., ::2]
-        _core.rollout_batch(program, given, start, path, None, None, None, 1, level, None)
-        return path
+
+        def roll(program: _core.RolloutProgram, commands: Floats, path: Floats) -> None:
+            given = commands if self.sideways else commands[..., ::2]
+            _core.rollout_batch(program, given, start, path, None, None, None, 1, level, None)
+
+        return roll
 
     def _boxes(self, commands: Floats, room: Floats) -> tuple[Floats, Floats]:
         """Return boxes [N, 4] and farthest ends [N]; a sequence that leaves the room is not followed on."""
         box, end = np.zeros((len(commands), 4)), np.zeros(len(commands))  # all begin at the start
-        left = np.arange(len(commands))
+        left, roll = np.arange(len(commands)), self._roller()
         for program in self.programs:
-            path = self._rolled(program, commands[left])
+            path = np.empty((3, commands.shape[1], len(left)))
+            roll(program, commands[left], path)
             lowest, highest = path[:2].min(axis=1), path[:2].max(axis=1)
             box[left, ::2] = np.minimum(box[left, ::2], lowest.T)
             box[left, 1::2] = np.maximum(box[left, 1::2], highest.T)
