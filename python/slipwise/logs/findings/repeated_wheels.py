@@ -99,8 +99,11 @@ def _at(evidence: _Evidence, offsets: NDArray[np.float64]) -> tuple[NDArray[np.f
         np.hypot(wheels[:, 0], wheels[:, 1]),
         np.abs(wheels[:, 2]),
     )
-    ordered = np.stack([values[np.lexsort((values, tried))] for values in differences], axis=1)
     count = np.bincount(tried, minlength=len(pairs))
-    enough = count >= _ENOUGH
-    first, count = (np.cumsum(count) - count)[enough], count[enough]
-    return offsets[enough], 0.5 * (ordered[first + (count - 1) // 2] + ordered[first + count // 2])
+    ordered = np.full((len(differences), len(pairs), count.max()), np.nan)  # which is behind all numbers
+    ordered[:, tried, np.arange(len(tried)) - (np.cumsum(count) - count)[tried]] = differences
+    ordered.sort(axis=2)
+    enough = np.flatnonzero(count >= _ENOUGH)
+    count = count[enough]
+    medians = 0.5 * (ordered[:, enough, (count - 1) // 2] + ordered[:, enough, count // 2])
+    return offsets[enough], medians.T
