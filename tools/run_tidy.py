@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs clang-tidy over the sources of the C++ core, several of a folder as one text.
+"""Runs clang-tidy over the sources of the C++ core, several as one text.
 
 Most of a run goes into reading the headers and into templates that the next source uses too. As one
 text, sources need less than half of the time; all of it is of the main file, so that no check looks
@@ -16,14 +16,17 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 from tools.check_includes import INCLUDE, ROOT
 
 BUILD = ROOT / "build/tidy"
 TOGETHER = BUILD / "together"
-MOST_SOURCES, MOST_LINES = 8, 1400  # of one text: 1 GB of memory
+MOST_SOURCES, MOST_LINES = 10, 1400  # of one text: 1 to 2 GB of memory
 SOURCES = re.compile(r"/cpp/src/")
+INCLUDED_FROM = (ROOT / "cpp/include", ROOT / "packages/slipwise-thesis/cpp/include")
+MARGIN, CONSTANT = re.compile(r"^[^\s/].*", re.MULTILINE), re.compile(r"\bk[A-Z]\w*")
 NOT_COMPILED = "[clang-diagnostic-error]"
 
 #: What a source defines for itself alone: a constant, a type, an alias, a function.
@@ -54,6 +57,25 @@ class Source:
         names = {name for each in found if each for name in each.groups() if name}
         return names - {"slipwise", "namespace"}
 
+    def included_constants(self) -> set[str]:
+        """Return the constants of the headers that it includes; another source may have one of its own."""
+        return set().union(*(constants_of(name) for name in included(self.text)))
+
+
+def included(text: str) -> list[str]:
+    """Return the names of this repository's headers that a text includes."""
+    found = (INCLUDE.match(line) for line in text.splitlines())
+    return [each[2] for each in found if each and each[2].startswith("slipwise/")]
+
+
+@cache
+def constants_of(name: str) -> frozenset[str]:
+    """Return the constants of a header and of those that it includes."""
+    path = next((each / name for each in INCLUDED_FROM if (each / name).exists()), None)
+    text = "" if path is None else path.read_text(encoding="utf-8")
+    here = (each for line in MARGIN.findall(text) for each in CONSTANT.findall(line))
+    return frozenset(here).union(*map(constants_of, included(text)))
+
 
 @dataclass
 class Group:
@@ -61,17 +83,18 @@ class Group:
 
     sources: list[Source] = field(default_factory=list)
     names: set[str] = field(default_factory=set)
+    constants: set[str] = field(default_factory=set)  # of headers
     lines: int = 0
 
-    def takes(self, source: Source, names: set[str], lines: int) -> bool:
+    def takes(self, source: Source, names: set[str], constants: set[str], lines: int) -> bool:
         """Return whether a source may be read with those that are here."""
         first = self.sources[0]
         return (
             len(self.sources) < MOST_SOURCES
             and self.lines + lines <= MOST_LINES
-            and source.path.parent == first.path.parent
             and source.command == first.command
-            and not names & self.names
+            and not names & (self.names | self.constants)
+            and not constants & self.names
         )
 
 
@@ -90,13 +113,14 @@ def groups_of(sources: list[Source]) -> list[Group]:
     """Return the sources in groups that can be read as one text, the largest first."""
     groups: list[Group] = []
     for source in sorted(sources, key=lambda each: each.path):
-        names, lines = source.own_names(), source.text.count("\n")
-        group = next((each for each in groups if each.takes(source, names, lines)), None)
+        names, constants, lines = source.own_names(), source.included_constants(), source.text.count("\n")
+        group = next((each for each in groups if each.takes(source, names, constants, lines)), None)
         if group is None:
             group = Group()
             groups.append(group)
         group.sources.append(source)
         group.names |= names
+        group.constants |= constants
         group.lines += lines
     return sorted(groups, key=lambda each: -each.lines)
 
@@ -126,6 +150,7 @@ def said_of(group: Group, path: Path, origins: list[tuple[Path, int]]) -> str:
     """Return what clang-tidy says of a group, at the places where it stands in the sources."""
     said = run(TOGETHER, [path])
     if NOT_COMPILED in said:  # sources that cannot be read together, or one that is wrong: each alone
+        print(f"clang-tidy: {path.name} does not compile: its {len(group.sources)} sources, each alone")
         return run(BUILD, [each.path for each in group.sources])
 
     lines, here = [], False

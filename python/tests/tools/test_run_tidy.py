@@ -43,15 +43,37 @@ def test_names_of_a_source_alone_are_those_at_the_margin(tmp_path: Path) -> None
     assert names == {"LEVEL", "kAlike", "kLongest", "Rows", "Held", "limits_of"}
 
 
-def test_sources_with_one_name_other_flags_or_folders_are_read_apart(tmp_path: Path) -> None:
+def test_sources_with_one_name_or_other_flags_are_read_apart_those_of_other_folders_together(
+    tmp_path: Path,
+) -> None:
     one = source(tmp_path, "a/one.cpp", "constexpr int kMost = 1;")
-    assert names_of([one, source(tmp_path, "a/two.cpp", "int two();")]) == [["one", "two"]]
+    for folder in ("a", "b"):
+        assert names_of([one, source(tmp_path, f"{folder}/two.cpp", "int two();")]) == [["one", "two"]]
     for other in (
         source(tmp_path, "a/three.cpp", "constexpr double kMost = 2.0;"),
         source(tmp_path, "a/four.cpp", "int two();", command=(*COMMAND, "-mavx2")),
-        source(tmp_path, "b/five.cpp", "int two();"),
     ):
         assert len(names_of([one, other])) == 2
+
+
+def test_a_constant_of_a_header_and_one_of_a_source_are_read_apart(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    headers = tmp_path / "include/slipwise"
+    headers.mkdir(parents=True)
+    (headers / "outer.hpp").write_text('#include "slipwise/inner.hpp"\n')
+    (headers / "inner.hpp").write_text(
+        "enum Place : int { kAlong, kAcross };\n  constexpr int kInside = 1;\n"
+    )
+    monkeypatch.setattr(run_tidy, "INCLUDED_FROM", (tmp_path / "include",))
+    run_tidy.constants_of.cache_clear()
+    one = source(tmp_path, "one.cpp", '#include "slipwise/outer.hpp"', "int one();")
+    assert one.included_constants() == {"kAlong", "kAcross"}
+    two = source(tmp_path, "two.cpp", "constexpr double kAcross = 2.0;")
+    assert names_of([one, two]) == [["one"], ["two"]]
+    run_tidy.constants_of.cache_clear()
+    assert names_of([two, one]) == [["one"], ["two"]]
+    run_tidy.constants_of.cache_clear()
 
 
 def test_each_line_knows_where_it_stands_and_a_header_is_read_once(tmp_path: Path) -> None:
