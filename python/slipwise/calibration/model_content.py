@@ -15,7 +15,8 @@ from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.position_settings import RESIDUALS
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.shares import shares_of
+from slipwise.calibration.shares import PoseSensor, shares_of
+from slipwise.logs.log import Run
 from slipwise.models import schema
 from slipwise.models.body_force import force_names
 from slipwise.models.car import car_rows
@@ -34,6 +35,7 @@ class ModelFacts:
     seconds: float  # of all segments learned
     segments: int
     positions: bool = False  # only positions were measured
+    runs: tuple[Run, ...] = ()  # whose windows the evidence has, where their poses are at hand
 
 
 def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema.ModelFile:
@@ -142,8 +144,9 @@ def _shares(learned: Learned, facts: ModelFacts) -> schema.Shares | None:
     """What arrives of commands that are speeds and yaw rates, where a learner kept the windows of the log."""
     if facts.input_name != "command" or learned.evidence is None or learned.car is not None:
         return None
-    sensor = facts.settings.sensor_extrinsics
-    return shares_of(learned.evidence.windows, sensor_y=sensor.y, sensor_yaw=sensor.yaw)
+    place = facts.settings.sensor_extrinsics
+    sensor = PoseSensor(place.y, place.yaw, facts.positions)
+    return shares_of(learned.evidence.windows, facts.runs, sensor)
 
 
 def _noise(learned: Learned, settings: Settings) -> schema.Noise:

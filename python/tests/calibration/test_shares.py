@@ -12,7 +12,7 @@ from sample_logs import Drive, simulated_log
 import slipwise as sw
 from slipwise import _core
 from slipwise.calibration import calibrate
-from slipwise.calibration.shares import shares_of
+from slipwise.calibration.shares import PoseSensor, shares_of
 from slipwise.logs import Log
 from slipwise.logs.motion_windows import evidence_of
 from slipwise.models.difference import differences
@@ -80,12 +80,72 @@ def test_a_sensor_that_is_known_to_be_turned_and_off_centre_changes_nothing() ->
     rows = evidence_of(simulated_log(DRIVE).runs, 0.5).windows
     turned = rows.copy()
     turned[:, 8] += 1.2  # what it measures as yaw
-    plain, known = shares_of(rows), shares_of(turned, sensor_yaw=1.2)
+    plain, known = shares_of(rows), shares_of(turned, sensor=PoseSensor(yaw=1.2))
     assert plain is not None
     assert known is not None
     assert plain.speed is not None
     assert known.speed is not None
     assert known.speed.arrives.value == pytest.approx(plain.speed.arrives.value)
+
+
+CURVES = replace(DRIVE, lag=0.3, alpha=(-0.05, -0.3), speeds=(0.05, 0.4), yaw_rates=(-2.5, 2.5))
+
+
+def of_speed(log: Log, *, poses: bool = True, positions: bool = False) -> AxisShares:
+    if positions:
+        log = Log(runs=tuple(replace(run, poses=replace(run.poses, course=True)) for run in log.runs))
+    rows = evidence_of(log.runs, 0.5).windows
+    shares = shares_of(rows, log.runs if poses else (), PoseSensor(positions=positions))
+    assert shares is not None
+    assert shares.speed is not None
+    assert shares.speed.floor is not None
+    return shares.speed
+
+
+def test_curves_take_nothing_from_a_speed() -> None:
+    """Chords of windows that turn by 2 rad, and back, are 3 % shorter than the ways."""
+    off = []
+    for seed in range(10):
+        speed = of_speed(simulated_log(replace(CURVES, seed=seed, seconds=180.0)))
+        assert speed.floor is not None
+        off += [(each.value - 0.95) / each.std for each in (speed.arrives, speed.floor)]
+        assert speed.floor.std < 0.005
+    assert np.sqrt(np.mean(np.square(off))) < 1.5
+    assert abs(np.mean(off)) < 0.7
+
+
+def test_curves_take_little_from_a_speed_where_the_poses_are_gone() -> None:
+    """A live learner has the windows alone."""
+    drives = (simulated_log(replace(CURVES, seed=seed, seconds=180.0)) for seed in range(6))
+    floors = [speed.floor.value for log in drives if (speed := of_speed(log, poses=False)).floor is not None]
+    assert np.mean(floors) == pytest.approx(0.95, abs=0.006)
+
+
+@pytest.mark.parametrize("noise", [0.005, 0.02])
+def test_neither_noise_nor_curves_bias_the_speed_of_positions_alone(noise: float) -> None:
+    """Of a log without headings, windows that turn far say nothing; the others lose nothing by noise."""
+    off, curve = [], replace(CURVES, speeds=(0.1, 1.0), yaw_rates=(-1.2, 1.2), pose_std=(noise, 0.0))
+    for seed in range(8):
+        log = simulated_log(replace(curve, seed=seed, seconds=180.0))
+        speed = of_speed(log, positions=True)
+        assert speed.floor is not None
+        assert speed.windows < of_speed(log).windows
+        assert speed.floor.std < 0.012
+        off += [(each.value - 0.95) / each.std for each in (speed.arrives, speed.floor)]
+    assert np.sqrt(np.mean(np.square(off))) < 1.5
+    assert abs(np.mean(off)) < 0.7
+
+
+def test_an_antenna_off_centre_is_no_speed() -> None:
+    drive = replace(CURVES, speeds=(0.1, 1.0), yaw_rates=(-1.2, 1.2), seconds=300.0)
+    run = simulated_log(drive).runs[0]
+    ahead = replace(
+        run.poses, x=run.poses.x + 0.4 * np.cos(run.poses.yaw), y=run.poses.y + 0.4 * np.sin(run.poses.yaw)
+    )
+    speed = of_speed(Log(runs=(replace(run, poses=ahead),)), positions=True)
+    assert speed.floor is not None
+    assert speed.floor.value == pytest.approx(0.95, abs=3.0 * speed.floor.std)
+    assert speed.floor.std < 0.02
 
 
 def test_a_side_that_turns_less_is_told_from_the_other() -> None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise.calibration.shares import Floats, commanded_to_body
+from slipwise.calibration.rate_fits import Floats
+from slipwise.calibration.shares import PoseSensor, commanded_to_body
+from slipwise.logs.log import has_course
 from slipwise.logs.motion_windows import evidence_of
 from slipwise.models.share_words import AXES, SHARE_HEAD, axis_shares, share_rows, share_sentences
 from slipwise.reporting.contents import Contents
@@ -29,9 +31,9 @@ class SharesSection:
         settings = model.content.provenance.settings.get("sensor_extrinsics")
         given = settings if isinstance(settings, dict) else {}
         windows = evidence_of(contents.log.runs, contents.unknown_after).windows
-        points = commanded_to_body(
-            windows, sensor_y=float(given.get("y", 0.0)), sensor_yaw=float(given.get("yaw", 0.0))
-        )
+        y, yaw = (float(given.get(name, 0.0)) for name in ("y", "yaw"))
+        sensor = PoseSensor(y, yaw, has_course(contents.log.runs))
+        points = commanded_to_body(windows, contents.log.runs, sensor)
         figures = [
             _figure(name, points[name], shares[name].arrives.value).html()
             for name in shares
