@@ -16,7 +16,6 @@ from slipwise.number_text import estimate_text
 Found = Mapping[str, PhysicalParameter]
 
 SAME = 2.0  # standard deviations of a difference; channels closer than that are said to be alike
-ALIKE = 0.1  # or closer than this fraction
 LARGEST_HIDDEN = 0.1  # std of the slow fraction up to which a slow mode may be left unsaid
 Channels = Mapping[str, str]
 
@@ -157,5 +156,4 @@ def _alike(first: _Said, second: _Said) -> bool:
 
 
 def _agree(first: tuple[float, float], second: tuple[float, float]) -> bool:
-    difference = abs(first[0] - second[0])
-    return difference <= max(SAME * hypot(first[1], second[1]), ALIKE * min(first[0], second[0]))
+    return abs(first[0] - second[0]) <= SAME * hypot(first[1], second[1])

@@ -83,6 +83,15 @@ def test_channels_that_differ_are_said_apart() -> None:
     assert "and yaw-rate commands after 0.500 ± 0.005 s" in text
 
 
+def test_channels_whose_lags_differ_beyond_their_spread_share_no_number() -> None:
+    """0.300 and 0.276 s are near to each other, and each is known to 0.003 s."""
+    text = str(summarise(follower(log_time_constant_omega=float(np.log(0.276)))))
+    assert "Follows speed commands after 0.200 ± 0.002 s and with a time constant of 0.300 ± 0.003 s" in text
+    assert "yaw-rate commands after 0.200 ± 0.002 s and with a time constant of 0.276 ± 0.003 s" in text
+    hazy = str(summarise(follower(std=0.05, log_time_constant_omega=float(np.log(0.276)))))
+    assert "Follows commands after " in hazy
+
+
 def test_a_gain_of_the_actuator_is_told_from_slip() -> None:
     text = str(summarise(make_model(replace(named("edd-2", ang__w=-0.4), response=True))))
     assert "turns 60.0 ± 1.0 % of what its wheels say" in text
