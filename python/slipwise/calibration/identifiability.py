@@ -103,8 +103,9 @@ def timing_words(
         held = "" if motion.dynamics else ", less half of their period, as they are held until the next"
         from_sampling = "One within half" if motion.dynamics else "A negative one below"
         sentences.append(
-            f"clock_offset is how much later poses are stamped than wheel speeds{held}. {from_sampling} the "
-            "period of the wheel speeds comes from their sampling, not from a clock."
+            f"clock_offset is how much later poses come than wheel speeds{held}: they are stamped late, or "
+            f"the robot follows its wheels late. {from_sampling} the period of the wheel speeds comes from "
+            "their sampling."
         )
         if "clock_offset" in unknown:
             sentences.append("This drive does not determine it.")

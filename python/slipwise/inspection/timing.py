@@ -22,7 +22,7 @@ class Timing:
 
 
 _MEANINGS = {
-    "clock_offset": "poses are stamped this much later than wheel speeds",
+    "clock_offset": "poses come this much later than wheel speeds, by their stamps or a body that lags",
     "delay_v": "from a speed command to the speed, with no lag",
     "delay_omega": "from a yaw rate command to the yaw rate, with no lag",
     "log_delay_v": "from a speed command to the first effect",

@@ -72,12 +72,7 @@ def _offset_sentences(parameters: tuple[PhysicalParameter, ...], model: Model) -
     late = clock.value + (step / 2.0 if model.content.input == "wheel" else 0.0) if clock is not None else 0.0
     if clock is not None and abs(late) > step / 2.0 + SIGNIFICANT * clock.std:
         seconds = estimate_text(abs(late), math.hypot(clock.std, step / math.sqrt(12.0)))
-        table = "; delays in the table are to them" if model.content.input == "command" else ""
-        sentences.append(
-            f"Poses are stamped {seconds} s later than wheel speeds of the same time."
-            if late > 0.0
-            else f"Wheel speeds are stamped {seconds} s late, as no pose is stamped before it happens{table}."
-        )
+        sentences.append(_later(seconds) if late > 0.0 else _late_wheels(seconds, model.content.input))
     parts = [
         f"{estimate_text(abs(place.value), place.std)} m {plus if place.value > 0.0 else minus}"
         for name, plus, minus in _SENSOR_PLACES
@@ -90,6 +85,20 @@ def _offset_sentences(parameters: tuple[PhysicalParameter, ...], model: Model) -
         degrees = estimate_text(math.degrees(yaw.value), math.degrees(yaw.std))
         sentences.append(f"The pose sensor is turned by {degrees} deg.")
     return sentences
+
+
+def _later(seconds: str) -> str:
+    """Poses tell a late stamp and a body that follows its wheels late by the same number."""
+    return (
+        f"Poses come {seconds} s later than wheel speeds of the same motion: they are stamped late, or the "
+        "robot follows its wheels so much later (tracks, soft tyres). Another sensor or a check of the "
+        "stamps tells which; a fusion should shift stamps in the first case alone."
+    )
+
+
+def _late_wheels(seconds: str, input_name: str) -> str:
+    table = "; delays in the table are to them" if input_name == "command" else ""
+    return f"Wheel speeds are stamped {seconds} s late, as no pose is stamped before it happens{table}."
 
 
 def _prediction_sentences(model: Model) -> list[str]:

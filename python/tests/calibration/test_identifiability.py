@@ -98,7 +98,7 @@ def test_it_is_said_which_delay_holds_which_clock_offset() -> None:
     assert "Wheel speeds in the log would" not in unused
     cascade = timing_words(_core.MotionModel.with_response(basis, True), (), wheels_logged=True)
     assert "from commands to wheel speeds" in cascade
-    assert "clock_offset is how much later poses are stamped than wheel speeds" in cascade
+    assert "clock_offset is how much later poses come than wheel speeds: they are stamped late, or" in cascade
     assert timing_words(_core.MotionModel(basis, False, False), (), wheels_logged=False) == ""
 
 
