@@ -18,6 +18,8 @@ from slipwise.number_text import number_text
 FEWEST_WINDOWS = 4  # held-out segments; fewer cannot be judged
 MUCH = 1.2  # ratio to the baseline beyond which an error is worse by a fault of the log, not by chance
 LEAST_EXPLAINED = 0.5  # of the motion; a model that explains less follows inputs of something else
+_SHOWS = 2.8  # times the mean error over the root of the segments, from which on a steady slip shows
+_DRIVEN = (0.2, 0.2)  # m and rad in a segment; what is hardly driven shows no slip for that reason
 SAME = 1.01  # ratio to the baseline up to which an error counts as the same; both print alike then
 
 Ratio = tuple[float, float, float]  # of two mean errors, with its 95 % interval
@@ -48,6 +50,24 @@ class Judgement:
     heading_ratio: Ratio
     still: Still | None  # None where nothing moved
     consistency: Consistency | None = None
+    told: tuple[float, float] = (0.0, 0.0)  # m and rad that the inputs move the robot by in a segment
+
+    @property
+    def hidden(self) -> dict[str, float]:
+        """What a steady slip may be, as a part of the motion, without showing; of axes that were driven.
+
+        A slip adds to errors that are there anyway, to either side; from two standard deviations of its mean
+        over the segments on it shows, those of one being 1.4 of the mean error for each of the two sides.
+        """
+        error = (self.held_out.baseline_position, self.held_out.baseline_heading)
+        if not self.held_out.segments:
+            return {}
+        shows = _SHOWS / math.sqrt(self.held_out.segments)
+        return {
+            axis: shows * wrong / told
+            for axis, wrong, told, least in zip(("speed", "turns"), error, self.told, _DRIVEN, strict=True)
+            if told > least
+        }
 
     @property
     def too_short(self) -> bool:
@@ -117,6 +137,7 @@ def judgement_of(
         ratio_of_means(learned.heading_error[half], baseline.heading_error[half]),
         max((each for each in still if each is not None), key=lambda s: s.explained, default=None),
         consistency_of(learned),
+        (_mean(np.hypot(*baseline.pose[half, :2].T)), _mean(np.abs(baseline.pose[half, 2]))),
     )
 
 

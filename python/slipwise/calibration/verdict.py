@@ -38,6 +38,7 @@ _CLOCKS = (
     "original bag show how far the clocks are apart."
 )
 LATEST = 1.0  # s from a command to its first effect; no drive takes longer
+HIDDEN = 0.05  # of the motion; where errors hide a larger slip, no robot is said to have none
 FEW = 20  # held-out segments; a gain that shows in fewer may be chance
 
 
@@ -226,21 +227,31 @@ def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
             "baseline."
         )
     elif not judgement.beats_baseline:
-        advice.append(_more_or_none(judgement.held_out, facts.input_name))
+        advice.append(_more_or_none(judgement, facts.input_name))
     if judgement.consistency is not None:
         advice += judgement.consistency.advice()
     return tuple(advice)
 
 
-def _more_or_none(held_out: HeldOut, input_name: str) -> str:
+def _more_or_none(judgement: Judgement, input_name: str) -> str:
     """What to do where the gain may be chance."""
+    held_out, followed = judgement.held_out, _FOLLOWED[input_name]
     if held_out.segments < FEW:
         minutes = 2.0 * FEW * held_out.horizon / 60.0
         return (
             f"Record a longer drive: {held_out.segments} held-out segments of {held_out.horizon:g} s tell "
             f"little; {FEW} take {minutes:.2g} minutes of driving."
         )
+    hidden = {axis: part for axis, part in judgement.hidden.items() if part > HIDDEN}
+    if hidden:
+        slip = " or ".join(f"{100.0 * part:.0f} % of the {axis}" for axis, part in hidden.items())
+        return (
+            f"The errors, by noise of the poses or slip that comes and goes, hide a steady slip of {slip}, "
+            f"if not more: whether this robot follows its {followed} as they are is not known. Record poses "
+            "with less noise (RTK, a localiser), or a drive several times as long that goes straight and "
+            "turns for seconds."
+        )
     return (
-        f"This robot follows its {_FOLLOWED[input_name]} as they are: use the kinematic baseline, or record "
+        f"This robot follows its {followed} as they are: use the kinematic baseline, or record "
         "driving that is faster or turns more."
     )

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 
 from slipwise.models.model import Model
-from slipwise.models.parameter_table import PhysicalParameter, known
+from slipwise.models.parameter_table import PhysicalParameter, known, physical_name
 from slipwise.models.slip_words import LEARNED
 from slipwise.models.step_response import SOON, StepResponse, step_responses
 from slipwise.number_text import estimate_text
@@ -16,6 +16,7 @@ from slipwise.number_text import estimate_text
 Found = Mapping[str, PhysicalParameter]
 
 SAME = 2.0  # standard deviations of a difference; channels closer than that are said to be alike
+LEAST_SLOW = 0.02  # of a step; a slow mode below it is none
 LARGEST_HIDDEN = 0.1  # std of the slow fraction up to which a slow mode may be left unsaid
 Channels = Mapping[str, str]
 
@@ -49,7 +50,8 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
     """Say how late each axis is, together where they are alike, and how much of a step arrives."""
     if model.content.input != "command":
         return []
-    found = {p.name: p for p in parameters}
+    unknown = set(map(physical_name, model.content.verdict.not_identifiable))
+    found = {p.name: replace(p, identified=p.identified and p.name not in unknown) for p in parameters}
     if model.car is not None:
         return _car_sentences(model, found)
     if not any(name.startswith(("time_constant_", "delay_")) for name in found):
@@ -124,7 +126,7 @@ def _lag(found: Found, place: str) -> tuple[tuple[float, float] | None, str]:
     slow, slow_time_constant = found.get(f"slow_fraction_{place}"), found.get(f"slow_time_constant_{place}")
     if slow is None or slow_time_constant is None:
         return one, ""
-    if abs(slow.value) <= SAME * slow.std:
+    if abs(slow.value) <= max(SAME * slow.std, LEAST_SLOW):
         return (None, "") if _may_be_slow(found, place) else (one, "")
     physical = 0.0 < slow.value < 1.0 and slow_time_constant.value > lag.value
     if not (physical and slow.identified and slow_time_constant.identified):
@@ -137,7 +139,8 @@ def _lag(found: Found, place: str) -> tuple[tuple[float, float] | None, str]:
 def _may_be_slow(found: Found, place: str) -> bool:
     """Whether there is a slow mode that is not known to be negligible."""
     slow = found.get(f"slow_fraction_{place}")
-    return slow is not None and not (abs(slow.value) <= SAME * slow.std <= SAME * LARGEST_HIDDEN)
+    none = slow is None or abs(slow.value) <= max(SAME * slow.std, LEAST_SLOW)
+    return slow is not None and not (none and slow.std <= LARGEST_HIDDEN)
 
 
 def _seconds(estimate: tuple[float, float]) -> str:

@@ -206,6 +206,27 @@ def test_a_verdict_against_its_own_figures_says_why() -> None:
     assert many.advice[0].startswith("This robot follows its commands as they are")
 
 
+def test_errors_that_hide_a_slip_are_no_sign_of_a_robot_without_one() -> None:
+    chance = judged((0.99, 0.9, 1.1), (1.0, 0.9, 1.1), windows=49)  # errors of 1 m and 1 rad
+    (text, *_) = give_verdict(replace(chance, told=(4.0, 1.0)), Identified(2, ()), facts()).advice
+    assert "hide a steady slip of 10 % of the speed or 40 % of the turns" in text
+    assert "Record poses with less noise" in text
+    assert "use the kinematic baseline" not in text
+    for told in ((40.0, 20.0), (40.0, 0.1)):  # small errors, and a drive that never turns
+        clear = give_verdict(replace(chance, told=told), Identified(2, ()), facts())
+        assert clear.advice[0].startswith("This robot follows its commands as they are")
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_robot_that_slips_under_noise_is_not_said_to_follow_its_wheels(seed: int) -> None:
+    noisy = Drive(seconds=240.0, seed=seed, basis=SLIP, alpha=(-0.05, -0.1), pose_std=(0.8, 0.6))
+    advice = " ".join(verdict_of(noisy).verdict.advice)
+    assert "as they are: use the kinematic baseline" not in advice
+    exact = replace(noisy, alpha=(0.0, 0.0), pose_std=(0.005, 0.002))
+    result = verdict_of(exact)
+    assert result.verdict.good or "This robot follows its wheels as they are" in result.verdict.advice[0]
+
+
 def test_a_worse_error_is_named_with_how_much_worse_it_is() -> None:
     verdict = give_verdict(judged((1.54, 0.8, 2.4), (0.5, 0.4, 0.6)), Identified(2, ()), facts())
     assert not verdict.good

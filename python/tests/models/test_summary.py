@@ -125,6 +125,18 @@ def test_a_slow_mode_is_said_where_it_is_one_and_the_whole_lateness_whatever_the
     assert f"2 s after a step, {share:.0f} ± " in text
 
 
+def test_a_slow_mode_that_is_none_or_was_not_learned_is_not_said() -> None:
+    tiny = {"slow_fraction_v": 0.0018, "slow_fraction_omega": 0.0018}
+    text = str(summarise(make_model(replace(named("edd-2", **tiny), response=True, std=0.0005))))
+    assert "with a time constant of 0.300" in text
+    assert "slower" not in text
+    learned = make_model(replace(named("edd-2"), response=True))
+    assert "slower" in str(summarise(learned))
+    content = learned.content.model_dump()
+    content["verdict"]["not_identifiable"] = ["log_slow_time_constant_v", "log_slow_time_constant_omega"]
+    assert "slower" not in str(summarise(Model(ModelFile.model_validate(content))))
+
+
 def test_wheels_alone_tell_a_separation_multiplier() -> None:
     slip = named("edd-2", ang__w=-0.4)
     assert "(separation multiplier 1.67 ± 0.03)" in str(summarise(make_model(slip)))
