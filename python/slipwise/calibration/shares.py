@@ -37,6 +37,7 @@ _CLEAR, _LARGE = 3.0, 0.1  # standard deviations, and part of the share, by whic
 _LARGEST = 100.0  # times what is commanded; more is of commands that are as good as none
 _TINY, _HUGE = 1e-6, 1e6  # m/s or rad/s; no robot is commanded less, or drives more
 _BEND = 1.0  # rad that a window may turn, and turn more than its neighbours, where positions tell speeds
+_WRAPS = 1.2  # rad by which turns in windows scatter, from which on many pass for turns the other way
 _COMMANDS, _WHEELS = 9, 13  # columns of forward, sideways, rotation, known
 _FORWARD, _SIDEWAYS, _ROTATION = 0, 1, 2
 
@@ -64,7 +65,8 @@ def shares_of(rows: Floats, runs: Sequence[Run] = (), sensor: PoseSensor = _PLAI
     if len(rows) < _FEWEST:
         return None
     axes = _axes(rows, runs, sensor)
-    speed, yaw_rate = _axis(rows, axes["speed"]), _axis(rows, axes["yaw_rate"])
+    lost = sensor.positions and _lost(rows, axes["yaw_rate"])
+    speed, yaw_rate = _axis(rows, axes["speed"]), None if lost else _axis(rows, axes["yaw_rate"])
     return Shares(speed=speed, yaw_rate=yaw_rate) if speed or yaw_rate else None
 
 
@@ -132,6 +134,15 @@ def _speeds_of_positions(rows: Floats, turns: Callable[[int], Fit], sensor_y: fl
     return SquareFit(
         plain.inputs, plain.outputs, plain.parts, beside=-sensor_y * rates, adding=np.square(swings)
     )
+
+
+def _lost(rows: Floats, turning: _Axis) -> bool:
+    """Whether courses of positions scatter so far that turns between them come out as turns the other way."""
+    fit = turning.to_body(_COMMANDS)
+    if not len(fit):
+        return False
+    left = (fit.outputs - fit.inputs @ fit.coefficients()) * float(np.median(rows[:, DURATION]))
+    return bool(np.sqrt(np.square(left).mean()) > _WRAPS)
 
 
 def _axis(rows: Floats, axis: _Axis) -> AxisShares | None:

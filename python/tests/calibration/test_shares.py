@@ -13,7 +13,7 @@ import slipwise as sw
 from slipwise import _core
 from slipwise.calibration import calibrate
 from slipwise.calibration.shares import PoseSensor, shares_of
-from slipwise.logs import Log
+from slipwise.logs import Log, Poses
 from slipwise.logs.motion_windows import evidence_of
 from slipwise.models.difference import differences
 from slipwise.models.schema import AxisShares
@@ -134,6 +134,26 @@ def test_neither_noise_nor_curves_bias_the_speed_of_positions_alone(noise: float
         off += [(each.value - 0.95) / each.std for each in (speed.arrives, speed.floor)]
     assert np.sqrt(np.mean(np.square(off))) < 1.5
     assert abs(np.mean(off)) < 0.7
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_courses_that_noise_turns_round_say_nothing_of_turns(seed: int) -> None:
+    """Positions at 1 Hz with 0.4 m of noise: what they say of turns is far too little."""
+    drive = replace(CURVES, seed=seed, seconds=400.0, speeds=(0.3, 2.0), yaw_rates=(-1.0, 1.0))
+    run = simulated_log(replace(drive, pose_std=(0.4, 0.0))).runs[0]
+    seldom = np.flatnonzero(np.diff(np.floor(run.poses.t)) > 0.0)
+    thin = Poses(
+        *(each[seldom] for each in (run.poses.t, run.poses.x, run.poses.y, run.poses.yaw)),
+        run.poses.frame[seldom],
+        course=True,
+    )
+    rows = evidence_of([replace(run, poses=thin)], 0.5).windows
+    shares = shares_of(rows, sensor=PoseSensor(positions=True))
+    assert shares is not None
+    assert shares.yaw_rate is None
+    assert shares.speed is not None
+    assert shares.speed.floor is not None
+    assert abs(shares.speed.floor.value - 0.95) < 3.0 * shares.speed.floor.std
 
 
 def test_an_antenna_off_centre_is_no_speed() -> None:
