@@ -109,12 +109,12 @@ void bind_readings(nb::module_& m) {
 }
 
 Rows window_rows(const std::deque<MotionWindow>& windows) {
-  Rows rows(std::ssize(windows), 17);
+  Rows rows(std::ssize(windows), 19);
   Eigen::Index i = 0;
   for (const MotionWindow& w : windows) {
     rows.row(i++) << static_cast<double>(w.run), w.start, w.since, w.duration, w.distance, w.course, w.turn,
         w.turn_degrees, w.start_yaw, w.commands.forward, w.commands.sideways, w.commands.rotation, w.commands.known,
-        w.wheels.forward, w.wheels.sideways, w.wheels.rotation, w.wheels.known;
+        w.wheels.forward, w.wheels.sideways, w.wheels.rotation, w.wheels.known, w.ahead, w.left;
   }
   return rows;
 }
@@ -144,7 +144,9 @@ void define_rows(nb::class_<Evidence>& evidence) {
       .def_prop_ro(
           "windows", [](const Evidence& e) { return window_rows(std::invoke(&Evidence::windows, e)); },
           "Rows of (run, start, since, duration, distance, course, turn, turn_degrees, start_yaw), then (forward, "
-          "sideways, rotation, known) of the commands and the same of the wheels, of poses that the gate accepted.")
+          "sideways, rotation, known) of the commands and the same of the wheels, then the ways ahead and left along "
+          "the "
+          "measured heading, of poses that the gate accepted.")
       .def_prop_ro(
           "measured_windows",
           [](const Evidence& e) { return window_rows(std::invoke(&Evidence::measured_windows, e)); },

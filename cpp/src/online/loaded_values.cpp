@@ -255,8 +255,8 @@ void WindowCutter::check_loaded() const {
   const auto finite = [](const MotionWindow& w) {
     const auto& [forward, sideways, rotation, known] = w.commands;
     return std::isfinite(w.start + w.since + w.duration + w.distance + w.course + w.turn + w.turn_degrees +
-                         w.start_yaw + forward + sideways + rotation + known + w.wheels.forward + w.wheels.sideways +
-                         w.wheels.rotation + w.wheels.known);
+                         w.start_yaw + w.ahead + w.left + forward + sideways + rotation + known + w.wheels.forward +
+                         w.wheels.sideways + w.wheels.rotation + w.wheels.known);
   };
   require(std::ranges::all_of(windows_, finite) && std::ranges::all_of(recent_, finite) && recent_.size() <= driven_ &&
               first_.has_value() == last_.has_value(),

@@ -50,11 +50,13 @@ bool WindowCutter::push(const NumberedRun& run, const MeasuredPose& pose, const 
   }
   if (begins) {
     frame_began_ = seen.t;
-    slot_ = turn_ = turn_degrees_ = 0.0;
+    slot_ = turn_ = turn_degrees_ = ahead_ = left_ = 0.0;
     first_ = last_ = seen;
     return true;
   }
-  turn_ += within_half_turn(seen.yaw - present(last_).yaw, kWholeTurn);
+  const double turned = within_half_turn(seen.yaw - present(last_).yaw, kWholeTurn);
+  add_way(seen, turned);
+  turn_ += turned;
   turn_degrees_ += within_half_turn(seen.yaw - present(last_).yaw, 360.0);
   last_ = seen;
   const double slot = std::floor((seen.t - frame_began_ + kSameStamp) / kLength);
@@ -63,9 +65,22 @@ bool WindowCutter::push(const NumberedRun& run, const MeasuredPose& pose, const 
   }
   close(run, seen, commands, wheels);
   slot_ = slot;
-  turn_ = turn_degrees_ = 0.0;
+  turn_ = turn_degrees_ = ahead_ = left_ = 0.0;
   first_ = seen;
   return true;
+}
+
+/// The arc from the last pose, along the heading amid it.
+void WindowCutter::add_way(const Seen& pose, double turned) {
+  const Seen& before = present(last_);
+  const double half = turned / 2.0;
+  const double arc_per_chord = half == 0.0 ? 1.0 : half / std::sin(half);
+  const double dx = arc_per_chord * (pose.x - before.x);
+  const double dy = arc_per_chord * (pose.y - before.y);
+  const double c = std::cos(before.yaw + half);
+  const double s = std::sin(before.yaw + half);
+  ahead_ += c * dx + s * dy;
+  left_ += c * dy - s * dx;
 }
 
 void WindowCutter::close(const NumberedRun& run, const Seen& last, const InputBuffer& commands,
@@ -87,6 +102,8 @@ void WindowCutter::close(const NumberedRun& run, const Seen& last, const InputBu
                       .turn = turn_,
                       .turn_degrees = turn_degrees_,
                       .start_yaw = first.yaw,
+                      .ahead = ahead_,
+                      .left = left_,
                       .commands = commanded,
                       .wheels = rolled});
   keep_recent(windows_.back());

@@ -198,7 +198,6 @@ def judged_content(
         seconds=seconds,
         segments=segments,
         positions=facts.positions,
-        runs=tuple(run.run for run in windows.drive),
     )
     return judged, model_content(learned, judged, origin)
 

@@ -16,7 +16,6 @@ from slipwise.calibration.learner import Posterior
 from slipwise.calibration.position_settings import RESIDUALS
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.shares import PoseSensor, shares_of
-from slipwise.logs.log import Run
 from slipwise.models import schema
 from slipwise.models.body_force import force_names
 from slipwise.models.car import car_rows
@@ -35,7 +34,6 @@ class ModelFacts:
     seconds: float  # of all segments learned
     segments: int
     positions: bool = False  # only positions were measured
-    runs: tuple[Run, ...] = ()  # whose windows the evidence has, where their poses are at hand
 
 
 def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema.ModelFile:
@@ -146,7 +144,7 @@ def _shares(learned: Learned, facts: ModelFacts) -> schema.Shares | None:
         return None
     place = facts.settings.sensor_extrinsics
     sensor = PoseSensor(place.y, place.yaw, facts.positions)
-    return shares_of(learned.evidence.windows, facts.runs, sensor)
+    return shares_of(learned.evidence.windows, sensor)
 
 
 def _noise(learned: Learned, settings: Settings) -> schema.Noise:

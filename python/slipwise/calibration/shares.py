@@ -10,7 +10,7 @@ is that along the heading. Of positions alone windows say nothing of speed in wh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -27,7 +27,6 @@ from slipwise.calibration.window_ways import (
     follows_before,
     ways_ahead,
 )
-from slipwise.logs.log import Run
 from slipwise.models.schema import AxisShares, Share, Shares
 
 _FEWEST = 20  # windows that say something
@@ -54,25 +53,22 @@ class PoseSensor:
 _PLAIN = PoseSensor()
 
 
-def shares_of(rows: Floats, runs: Sequence[Run] = (), sensor: PoseSensor = _PLAIN) -> Shares | None:
+def shares_of(rows: Floats, sensor: PoseSensor = _PLAIN) -> Shares | None:
     """Return the shares that arrive; None where too few windows say it.
 
     Args:
         rows: windows, as `_core.MotionEvidence` has them.
-        runs: whose windows these are, where their poses are at hand: curves are exact with them.
         sensor: what is known of the pose sensor.
     """
     if len(rows) < _FEWEST:
         return None
-    axes = _axes(rows, runs, sensor)
+    axes = _axes(rows, sensor)
     lost = sensor.positions and _lost(rows, axes["yaw_rate"])
     speed, yaw_rate = _axis(rows, axes["speed"]), None if lost else _axis(rows, axes["yaw_rate"])
     return Shares(speed=speed, yaw_rate=yaw_rate) if speed or yaw_rate else None
 
 
-def commanded_to_body(
-    rows: Floats, runs: Sequence[Run] = (), sensor: PoseSensor = _PLAIN
-) -> dict[str, tuple[Floats, Floats]]:
+def commanded_to_body(rows: Floats, sensor: PoseSensor = _PLAIN) -> dict[str, tuple[Floats, Floats]]:
     """Return what is there of commands in each window, and what the body does, by axis; empty if too few are.
 
     Commands are those of the window and its neighbours, weighted as they act; a picture of them against the
@@ -81,7 +77,7 @@ def commanded_to_body(
     if len(rows) < _FEWEST:
         return {}
     found = {}
-    for name, axis in _axes(rows, runs, sensor).items():
+    for name, axis in _axes(rows, sensor).items():
         fit = axis.to_body(_COMMANDS)
         if _share(fit) is not None and fit.gain() != 0.0:
             found[name] = (fit.inputs @ (fit.coefficients() / fit.gain()), fit.rates_out())
@@ -96,13 +92,13 @@ class _Axis:
     to_body: Callable[[int], Fit]  # of the commands or the wheels, by their first column
 
 
-def _axes(rows: Floats, runs: Sequence[Run], sensor: PoseSensor) -> dict[str, _Axis]:
+def _axes(rows: Floats, sensor: PoseSensor) -> dict[str, _Axis]:
     duration = rows[:, DURATION]
 
     def turns(first: int) -> Fit:
         return _fit(rows[:, first + _ROTATION] / duration, rows[:, TURN] / duration, _places(rows, first))
 
-    ahead = (ways_ahead(rows, runs, sensor.yaw) + sensor.y * rows[:, TURN]) / duration
+    ahead = (ways_ahead(rows, sensor.yaw) + sensor.y * rows[:, TURN]) / duration
 
     def speeds(first: int) -> Fit:
         if sensor.positions:

@@ -79,7 +79,8 @@ def test_few_windows_say_nothing() -> None:
 def test_a_sensor_that_is_known_to_be_turned_and_off_centre_changes_nothing() -> None:
     rows = evidence_of(simulated_log(DRIVE).runs, 0.5).windows
     turned = rows.copy()
-    turned[:, 8] += 1.2  # what it measures as yaw
+    turn = np.array([[np.cos(1.2), -np.sin(1.2)], [np.sin(1.2), np.cos(1.2)]])
+    turned[:, 17:] = rows[:, 17:] @ turn  # ways ahead and left, by the yaw that it measures
     plain, known = shares_of(rows), shares_of(turned, sensor=PoseSensor(yaw=1.2))
     assert plain is not None
     assert known is not None
@@ -91,11 +92,11 @@ def test_a_sensor_that_is_known_to_be_turned_and_off_centre_changes_nothing() ->
 CURVES = replace(DRIVE, lag=0.3, alpha=(-0.05, -0.3), speeds=(0.05, 0.4), yaw_rates=(-2.5, 2.5))
 
 
-def of_speed(log: Log, *, poses: bool = True, positions: bool = False) -> AxisShares:
+def of_speed(log: Log, *, positions: bool = False) -> AxisShares:
     if positions:
         log = Log(runs=tuple(replace(run, poses=replace(run.poses, course=True)) for run in log.runs))
     rows = evidence_of(log.runs, 0.5).windows
-    shares = shares_of(rows, log.runs if poses else (), PoseSensor(positions=positions))
+    shares = shares_of(rows, PoseSensor(positions=positions))
     assert shares is not None
     assert shares.speed is not None
     assert shares.speed.floor is not None
@@ -112,13 +113,6 @@ def test_curves_take_nothing_from_a_speed() -> None:
         assert speed.floor.std < 0.005
     assert np.sqrt(np.mean(np.square(off))) < 1.5
     assert abs(np.mean(off)) < 0.7
-
-
-def test_curves_take_little_from_a_speed_where_the_poses_are_gone() -> None:
-    """A live learner has the windows alone."""
-    drives = (simulated_log(replace(CURVES, seed=seed, seconds=180.0)) for seed in range(6))
-    floors = [speed.floor.value for log in drives if (speed := of_speed(log, poses=False)).floor is not None]
-    assert np.mean(floors) == pytest.approx(0.95, abs=0.006)
 
 
 @pytest.mark.parametrize("noise", [0.005, 0.02])

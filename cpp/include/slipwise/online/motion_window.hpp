@@ -22,6 +22,8 @@ struct MotionWindow {
   double turn;          ///< yaw of the last minus the first [rad], followed from pose to pose
   double turn_degrees;  ///< the same, were yaws in degrees
   double start_yaw;     ///< as measured
+  double ahead;         ///< way along the measured heading [m], from pose to pose: curves do not shorten it
+  double left;          ///< and across it
   HeldMotion commands;
   HeldMotion wheels;
 };
@@ -53,7 +55,7 @@ class WindowCutter {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.windows_, self.recent_, self.driven_, self.run_began_, self.frame_began_, self.first_, self.last_,
-      self.slot_, self.turn_, self.turn_degrees_, self.course_from_, self.course_);
+      self.slot_, self.turn_, self.turn_degrees_, self.ahead_, self.left_, self.course_from_, self.course_);
   }
 
  private:
@@ -65,6 +67,7 @@ class WindowCutter {
     long frame;
   };
   void close(const NumberedRun& run, const Seen& last, const InputBuffer& commands, const InputBuffer& wheels);
+  void add_way(const Seen& pose, double turned);
   void keep_recent(const MotionWindow& window);
   double course(const Seen& position, const InputBuffer& inputs);
 
@@ -78,6 +81,8 @@ class WindowCutter {
   double slot_ = 0.0;                ///< number of the window in its frame
   double turn_ = 0.0;                ///< since the first pose of the window [rad]
   double turn_degrees_ = 0.0;
+  double ahead_ = 0.0;               ///< [m]
+  double left_ = 0.0;                ///< [m]
   std::optional<Seen> course_from_;  ///< position from which the path heads to the next
   double course_ = 0.0;              ///< [rad]
 };

@@ -33,7 +33,7 @@ class SharesSection:
         windows = evidence_of(contents.log.runs, contents.unknown_after).windows
         y, yaw = (float(given.get(name, 0.0)) for name in ("y", "yaw"))
         sensor = PoseSensor(y, yaw, has_course(contents.log.runs))
-        points = commanded_to_body(windows, contents.log.runs, sensor)
+        points = commanded_to_body(windows, sensor)
         figures = [
             _figure(name, points[name], shares[name].arrives.value).html()
             for name in shares
