@@ -15,7 +15,7 @@ from sample_bags import EPOCH, ODOMETRY, POSE, SECOND, TWIST, Bag
 
 from slipwise.calibration import Calibration, calibrate
 from slipwise.logs import LogOptions, open_log
-from slipwise.logs.log import Floats
+from slipwise.logs.log import Bools, Floats
 from slipwise.models.model import Model
 from slipwise.models.slip_words import slip_gains
 
@@ -48,14 +48,21 @@ def field_drive(
     hold: float = 1.8,
     timeout: float = np.inf,
     period: float = 0.1,
+    deadman: bool = False,
 ) -> FieldDrive:
-    """Drive with a new command every `hold` [s], repeated every `period` [s]; it ends after `timeout` [s]."""
+    """Drive with a new command every `hold` [s], repeated every `period` [s]; it ends after `timeout` [s].
+
+    With a `deadman` switch, none is sent where it `is_released`.
+    """
     rng = np.random.default_rng(seed)
     t = STEP * np.arange(round(seconds / STEP))
     count = int(seconds / hold) + 1
     targets = np.column_stack((rng.uniform(0.1, 0.8, count), rng.uniform(-0.8, 0.8, count)))
     targets[0] = 0.0
     sent = np.round(np.floor(np.round(t / period, 9)) * period, 9)  # when the command in force was given
+    if deadman:
+        begun = np.round(np.floor(np.round(t / hold, 9)) * hold, 9)
+        sent = np.where(is_released(t, hold), np.round(begun - period, 9), sent)
     command = targets[(np.round(sent / hold, 9)).astype(int)]
     heard = np.where((t - sent < timeout)[:, None], command, 0.0)
     late = round(DELAY / STEP)
@@ -64,6 +71,11 @@ def field_drive(
     for k in range(1, len(t)):
         wheels[k] = wheels[k - 1] + (1.0 - np.exp(-STEP / LAG)) * (delayed[k - 1] - wheels[k - 1])
     return FieldDrive(t, command, wheels, _integrated(wheels * shares), _integrated(wheels))
+
+
+def is_released(t: Floats, hold: float) -> Bools:
+    """Say when an operator lets go of the stick: in every third hold."""
+    return np.asarray(np.floor(np.round(t / hold, 9)) % 3 == 2)
 
 
 def _integrated(twists: Floats) -> Floats:

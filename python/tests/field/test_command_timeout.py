@@ -9,7 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from sample_bags import TWIST, Bag
-from sample_field import FieldDrive, field_drive, field_path, learned, recorder, share_errors, write_poses
+from sample_field import (
+    FieldDrive,
+    field_drive,
+    field_path,
+    is_released,
+    learned,
+    recorder,
+    share_errors,
+    write_poses,
+)
 from scripted_node import Scripted
 
 from slipwise.calibration import calibrate, make_settings
@@ -19,7 +28,9 @@ from slipwise.live.build import build_node
 from slipwise.live.command_ends import WAIT, CommandEnds
 from slipwise.live.replay import samples_of
 from slipwise.live.samples import Command, Pose
-from slipwise.logs import LogOptions, open_log
+from slipwise.logs import Inputs, LogOptions, Poses, open_log
+from slipwise.logs.findings.command_stops import stops_of
+from slipwise.logs.findings.diagnose import diagnose
 
 
 def rare_commands(tmp_path: Path, drive: FieldDrive, period: float) -> Path:
@@ -49,6 +60,54 @@ def test_how_long_a_watchdog_waits_is_found(tmp_path: Path, timeout: float, peri
     drive = field_drive(180.0, hold=period, period=period, timeout=timeout)
     with pytest.raises(LogError, match=rf"stops about {timeout:g} s after each"):
         learned(rare_commands(tmp_path, drive, period))
+
+
+def deadman_log(tmp_path: Path, timeout: float, hold: float = 1.5) -> Path:
+    """Commands at 10 Hz while a stick is held, and none where it is released."""
+    drive = field_drive(150.0, hold=hold, timeout=timeout, deadman=True)
+    bag = Bag()
+    write_poses(bag, drive)
+    for k in drive.every(0.1):
+        if not is_released(drive.t[k : k + 1], hold)[0]:
+            bag.add(recorder(drive.t[k]), "/cmd_vel", TWIST, bag.twist(*map(float, drive.command[k])))
+    return bag.write(tmp_path / "deadman.mcap")
+
+
+@pytest.mark.parametrize("timeout", [0.25, 0.5])
+def test_a_watchdog_is_found_by_rare_silences_of_a_stream(tmp_path: Path, timeout: float) -> None:
+    path = deadman_log(tmp_path, timeout)
+    verdict = learned(path)[0].verdict
+    assert not verdict.good
+    (said,) = verdict.contradictions
+    assert said == (
+        "commands come every 0.1 s, with longer silences, and the robot stops about "
+        f"{timeout:g} s after the last of them"
+    )
+    (found,) = diagnose(path, LogOptions()).found
+    assert (found.kind, found.spoils) == ("command-timeout", True)
+    assert found.advice[0].startswith(f"Give --command-timeout {timeout:g}:")
+    result = learned(path, command_timeout=timeout)[0]
+    assert result.verdict.good
+    assert np.abs(share_errors(result.model)).max() < 3.0
+
+
+def test_a_robot_that_goes_on_in_silences_has_no_watchdog(tmp_path: Path) -> None:
+    path = deadman_log(tmp_path, np.inf)
+    assert diagnose(path, LogOptions()).found == ()
+    assert learned(path)[0].verdict.good
+
+
+def test_silences_of_a_robot_that_was_told_to_stand_show_no_watchdog() -> None:
+    """Every third hold ends with a zero before the silence."""
+    t = np.arange(0.0, 150.0, 0.1)
+    v = np.where(is_released(t, 1.5), 0.0, 0.6)
+    x = np.concatenate(([0.0], np.cumsum(0.1 * v[:-1])))
+    rest = np.zeros_like(t)
+    sent = (v != 0.0) | (np.concatenate(([1.0], v[:-1])) != 0.0)
+    commands = Inputs(t=t[sent], v=v[sent], vy=rest[sent], omega=rest[sent])
+    stops = stops_of([(commands, Poses(t=t, x=x, y=rest, yaw=rest, frame=np.zeros(len(t), np.int64)))])
+    assert stops.after() is None
+    assert stops.words(0.5) is None
 
 
 def test_a_robot_that_holds_its_commands_is_told_of_unknown_after(tmp_path: Path) -> None:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from slipwise.logs.command_timeout import REPEAT
 from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.findings.watchdog_fit import Piece, waited
 from slipwise.logs.log import Bools, Floats, Inputs, Poses
 from slipwise.logs.motion_windows import wrapped
 
@@ -20,10 +20,10 @@ _AGE = 0.1  # s, of the steps in which a command's age is checked
 _OLDEST = 6.0  # s after a command
 _SLOWEST = 0.05  # m/s or rad/s; less is no command to move
 _FEWEST = 10  # pieces of motion in a step of ages
+_NEW = 200  # steps, after which it is fitted again
 _MOST_GAPS = 100_000  # between commands
 _LEFT = 0.35  # of a command at most, where it has ended
-_LENGTHS, _DELAYS = np.arange(0.1, 4.01, 0.05), np.arange(0.0, 0.61, 0.05)  # s, tried
-_LAGS = np.array((0.03, 0.1, 0.2, 0.3, 0.5, 0.8))  # s, tried
+_KEPT, _APART = 6000, 0.1  # newest steps of poses, and s between two, from which the time is fitted
 
 
 class CommandStops:
@@ -33,22 +33,45 @@ class CommandStops:
         count = int(_OLDEST / _AGE)
         self._given, self._done, self._pieces = np.zeros(count), np.zeros(count), np.zeros(count)
         self._gaps: Floats = np.empty(0)
+        self._newest: list[Piece] = []
+        self._steps, self._fitted_at = 0, -_NEW  # between poses
+        self._fitted: float | None = None
 
     def add(self, commands: Inputs, poses: Poses) -> None:
-        """Add commands and poses of one run, or of a piece of it."""
-        for asked, measured, age in _motion(commands, poses):
-            kept = (age >= 0.0) & (age < _OLDEST) & (asked > _SLOWEST)
+        """Add commands and poses of one run, or of a piece of it, whose first command was the last before."""
+        self._gaps = np.concatenate((self._gaps, np.diff(commands.t)[_moves(commands)[:-1]]))[-_MOST_GAPS:]
+        every = _piece(commands, poses)
+        if every is None:
+            return
+        held = np.searchsorted(every.t, every.middle, side="right") - 1
+        age = every.middle - every.t[held]
+        for asked, moved in zip(every.given[held].T, every.moved.T, strict=True):
+            kept = (age < _OLDEST) & (np.abs(asked) > _SLOWEST) & np.isfinite(moved)
             step, ones = (age[kept] / _AGE).astype(int), np.ones(int(kept.sum()))
             for total, part in (
-                (self._given, asked[kept]),
-                (self._done, measured[kept]),
+                (self._given, np.abs(asked[kept])),
+                (self._done, np.sign(asked[kept]) * moved[kept]),
                 (self._pieces, ones),
             ):
                 total += np.bincount(step, part, len(total))
-        self._gaps = np.concatenate((self._gaps, np.diff(commands.t)[_moves(commands)[:-1]]))[-_MOST_GAPS:]
+        self._steps += len(every.start)
+        self._keep(_piece(commands, _thinned(poses)))
+
+    def _keep(self, piece: Piece | None) -> None:
+        """Keep the newest steps."""
+        if piece is None:
+            return
+        if self._newest and self._newest[-1].t[-1] == piece.t[0]:
+            piece = self._newest.pop().followed_by(piece)
+        self._newest.append(piece.newest(_KEPT))
+        while sum(len(each.start) for each in self._newest[1:]) > _KEPT:
+            self._newest.pop(0)
 
     def after(self) -> float | None:
-        """Return how long after a command the robot stops though no other came [s]; None where it goes on."""
+        """Return how long after a command the robot stops though no other came [s]; None where it goes on.
+
+        Rare silences of a stream show it as well as commands that are rare throughout.
+        """
         known = np.flatnonzero(self._pieces >= _FEWEST)
         if len(known) < 3:
             return None
@@ -57,7 +80,9 @@ class CommandStops:
         after = np.flatnonzero(left[top:] < 0.5 * left[top])
         if not len(after) or float(np.median(left[top + after[0] :][-3:])) > _LEFT * left[top]:
             return None
-        return _pulse(np.asarray(_AGE * (known + 0.5), dtype=np.float64), left)
+        if self._steps >= self._fitted_at + _NEW:  # what was found stays where nothing newer shows it
+            self._fitted, self._fitted_at = waited(self._newest, _SLOWEST) or self._fitted, self._steps
+        return self._fitted
 
     def words(self, unknown_after: float) -> tuple[str, str] | None:
         """Say how rarely commands come and what the robot does between them, and what to do about it.
@@ -68,9 +93,13 @@ class CommandStops:
         if len(self._gaps) < _FEWEST:
             return None
         usual, stop = float(np.median(self._gaps)), self.after()
-        if stop is not None and stop < usual:
+        if stop is not None:
+            rarely = stop < usual
             return (
-                f"commands come every {usual:.2g} s, and the robot stops about {stop:.2g} s after each",
+                f"commands come every {usual:.2g} s"
+                + ("" if rarely else ", with longer silences")
+                + f", and the robot stops about {stop:.2g} s after "
+                + ("each" if rarely else "the last of them"),
                 f"Give --command-timeout {stop:.2g}: a command ends after so long where it is not repeated.",
             )
         if usual <= unknown_after:
@@ -82,11 +111,9 @@ class CommandStops:
         return f"commands come every {usual:.2g} s and count as unknown after {unknown_after:g} s", advice
 
     def found(self, unknown_after: float) -> Finding | None:
-        """Say where the robot stops between commands that are taken to be held until `unknown_after` [s]."""
+        """Say where the robot stops although commands are taken to be held until `unknown_after` [s]."""
         stop = self.after()
-        if stop is None or stop + REPEAT > unknown_after:
-            return None
-        sentence, advice = self.words(unknown_after) or ("", "")
+        sentence, advice = (stop is not None and self.words(unknown_after)) or ("", "")
         return CommandTimeout.found(sentence, advice, evidence=stop) if sentence else None
 
 
@@ -95,8 +122,11 @@ class CommandTimeout(Check):
 
     kind, family = "command-timeout", "drive"
     of_input = True
-    means = "commands come rarely: the robot's watchdog stops it in between, or it holds them for long"
-    shows = "how long after a command the robot stops, and how far commands are apart"
+    means = (
+        "commands come rarely, or are silent for a while (a released stick): the robot's watchdog stops it "
+        "in between, or it holds them for long"
+    )
+    shows = "how long after a command that is not repeated the robot stops, and how far commands are apart"
     cure = "`--command-timeout S`; on the robot, send commands more often or raise `cmd_vel_timeout`"
 
     def look_at(self, whole: WholeLog) -> Finding | None:
@@ -119,35 +149,28 @@ def stops_of(pairs: Iterable[tuple[Inputs, Poses]]) -> CommandStops:
     return stops
 
 
-def _pulse(age: Floats, left: Floats) -> float:
-    """Return how long a pulse [s] is whose answer by a delay and a lag is what is `left` [N] at ages [N]."""
-    seconds, delay, lag = np.meshgrid(_LENGTHS, _DELAYS, _LAGS, indexing="ij")
-    since = age - delay[..., None]
-    rise = 1.0 - np.exp(-np.maximum(since, 0.0) / lag[..., None])
-    fall = 1.0 - np.exp(-np.maximum(since - seconds[..., None], 0.0) / lag[..., None])
-    answer = rise - fall
-    size = np.sum(answer * answer, axis=-1)
-    fit = np.where(size > 0.0, np.sum(answer * left, axis=-1), 0.0) ** 2 / np.where(size > 0.0, size, 1.0)
-    return float(seconds.ravel()[np.argmax(fit)])
+def _thinned(poses: Poses) -> Poses:
+    """Return poses that are about `_APART` from each other; what beside them was measured is left away."""
+    _, kept = np.unique(np.floor(poses.t / _APART), return_index=True)
+    t, x, y, yaw = (column[kept] for column in (poses.t, poses.x, poses.y, poses.yaw))
+    return Poses(t, x, y, yaw, poses.frame[kept], course=poses.course)
 
 
-def _motion(commands: Inputs, poses: Poses) -> list[tuple[Floats, Floats, Floats]]:
-    """Return what was asked, measured along it, and the command's age [s], of speeds and of yaw rates."""
+def _piece(commands: Inputs, poses: Poses) -> Piece | None:
+    """Return what was asked and done between poses; None where nothing was."""
     if len(poses) < 2 or not len(commands):
-        return []
+        return None
     steps = np.diff(poses.t)
     middle = poses.t[:-1] + 0.5 * steps
-    held = np.searchsorted(commands.t, middle, side="right") - 1
-    good = (held >= 0) & (steps < _OLDEST) & (poses.frame[1:] == poses.frame[:-1])
-    held, middle, steps = held[good], middle[good], steps[good]
-    yaw = poses.yaw[:-1][good]
-    along = np.cos(yaw) * np.diff(poses.x)[good] + np.sin(yaw) * np.diff(poses.y)[good]
-    turn = wrapped(np.diff(poses.yaw))[good]
-    age = middle - commands.t[held]
-    found = []
-    for asked, moved in ((commands.v[held], along / steps), (commands.omega[held], turn / steps)):
-        found.append((np.abs(asked), np.sign(asked) * moved, age))
-    return found if not poses.course else found[:1]
+    good = (middle >= commands.t[0]) & (steps < _OLDEST) & (poses.frame[1:] == poses.frame[:-1])
+    if not good.any():
+        return None
+    yaw = poses.yaw[:-1]
+    along = (np.cos(yaw) * np.diff(poses.x) + np.sin(yaw) * np.diff(poses.y)) / steps
+    turn = np.full(len(steps), np.nan) if poses.course else wrapped(np.diff(poses.yaw)) / steps
+    given = np.column_stack((commands.v, commands.omega))
+    moved = np.column_stack((along, turn))
+    return Piece(commands.t, given, poses.t[:-1][good], poses.t[1:][good], moved[good])
 
 
 def _moves(commands: Inputs) -> Bools:
