@@ -35,7 +35,7 @@ from slipwise.logs.findings.saturation import Saturated
 from slipwise.logs.findings.seen import Seen, WholeLog
 from slipwise.logs.findings.sensor_place import SensorOffCentre
 from slipwise.logs.findings.source_scale import SourceScale
-from slipwise.logs.findings.sources import TwoSources
+from slipwise.logs.findings.sources import IdleSource, TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
 from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
@@ -85,7 +85,7 @@ WHOLE: tuple[Check, ...] = (
     GyroScale(),
     TwoSources(),
 )
-#: What a live node looks for in its last minutes; two sources it watches sample by sample.
+#: What a live node looks for in its last minutes; two sources of wheels or poses it watches as they come.
 OF_STREAM: tuple[Check, ...] = (
     WheelSpikes(),
     ReversalJumps(),
@@ -100,6 +100,7 @@ OF_STREAM: tuple[Check, ...] = (
     ClockDrift(),
     SourceScale(),
     GyroScale(),
+    IdleSource(),
 )
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(

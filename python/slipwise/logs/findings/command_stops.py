@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from slipwise.logs.findings.commanded_motion import CommandedMotion
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.findings.watchdog_fit import Piece, waited
+from slipwise.logs.findings.watchdog_fit import waited
 from slipwise.logs.log import Bools, Floats, Inputs, Poses
-from slipwise.logs.motion_windows import wrapped
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import WholeLog
@@ -33,14 +33,14 @@ class CommandStops:
         count = int(_OLDEST / _AGE)
         self._given, self._done, self._pieces = np.zeros(count), np.zeros(count), np.zeros(count)
         self._gaps: Floats = np.empty(0)
-        self._newest: list[Piece] = []
+        self._newest: list[CommandedMotion] = []
         self._steps, self._fitted_at = 0, -_NEW  # between poses
         self._fitted: float | None = None
 
     def add(self, commands: Inputs, poses: Poses) -> None:
         """Add commands and poses of one run, or of a piece of it, whose first command was the last before."""
         self._gaps = np.concatenate((self._gaps, np.diff(commands.t)[_moves(commands)[:-1]]))[-_MOST_GAPS:]
-        every = _piece(commands, poses)
+        every = CommandedMotion.between(commands, poses)
         if every is None:
             return
         held = np.searchsorted(every.t, every.middle, side="right") - 1
@@ -55,9 +55,9 @@ class CommandStops:
             ):
                 total += np.bincount(step, part, len(total))
         self._steps += len(every.start)
-        self._keep(_piece(commands, _thinned(poses)))
+        self._keep(CommandedMotion.between(commands, _thinned(poses)))
 
-    def _keep(self, piece: Piece | None) -> None:
+    def _keep(self, piece: CommandedMotion | None) -> None:
         """Keep the newest steps."""
         if piece is None:
             return
@@ -154,23 +154,6 @@ def _thinned(poses: Poses) -> Poses:
     _, kept = np.unique(np.floor(poses.t / _APART), return_index=True)
     t, x, y, yaw = (column[kept] for column in (poses.t, poses.x, poses.y, poses.yaw))
     return Poses(t, x, y, yaw, poses.frame[kept], course=poses.course)
-
-
-def _piece(commands: Inputs, poses: Poses) -> Piece | None:
-    """Return what was asked and done between poses; None where nothing was."""
-    if len(poses) < 2 or not len(commands):
-        return None
-    steps = np.diff(poses.t)
-    middle = poses.t[:-1] + 0.5 * steps
-    good = (middle >= commands.t[0]) & (steps < _OLDEST) & (poses.frame[1:] == poses.frame[:-1])
-    if not good.any():
-        return None
-    yaw = poses.yaw[:-1]
-    along = (np.cos(yaw) * np.diff(poses.x) + np.sin(yaw) * np.diff(poses.y)) / steps
-    turn = np.full(len(steps), np.nan) if poses.course else wrapped(np.diff(poses.yaw)) / steps
-    given = np.column_stack((commands.v, commands.omega))
-    moved = np.column_stack((along, turn))
-    return Piece(commands.t, given, poses.t[:-1][good], poses.t[1:][good], moved[good])
 
 
 def _moves(commands: Inputs) -> Bools:

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from slipwise.logs.findings.commanded_motion import CommandedMotion
 from slipwise.logs.log import Bools, Floats, Ints
 
 #: Tried [s]; the last is no watchdog.
@@ -22,46 +22,7 @@ _FEWEST = 3  # silences that are longer than the watchdog waits
 _LEFT = 0.6  # of the squared errors without a watchdog, those with one are less
 
 
-@dataclass(frozen=True)
-class Piece:
-    """Commands of one recording, and what the robot did between poses."""
-
-    t: Floats  # [N] s, stamps of commands
-    given: Floats  # [N, 2] m/s and rad/s
-    start: Floats  # [K] s, of steps between two poses
-    stop: Floats  # [K] s
-    moved: Floats  # [K, 2] m/s and rad/s; NaN where only courses were measured
-
-    @property
-    def middle(self) -> Floats:
-        """Middle of each step [s], [K]."""
-        return 0.5 * (self.start + self.stop)
-
-    def newest(self, count: int) -> Piece:
-        """Return its newest steps, and the commands from then on."""
-        if len(self.start) <= count:
-            return self
-        first = max(int(np.searchsorted(self.t, self.start[-count], side="right")) - 1, 0)
-        steps = (self.start[-count:], self.stop[-count:], self.moved[-count:])
-        return Piece(self.t[first:], self.given[first:], *steps)
-
-    def followed_by(self, after: Piece) -> Piece:
-        """Return one piece of two, whose last and first command are the same."""
-        pairs = (
-            (self.t, after.t[1:]),
-            (self.given, after.given[1:]),
-            (self.start, after.start),
-            (self.stop, after.stop),
-            (self.moved, after.moved),
-        )
-        return Piece(*map(np.concatenate, pairs))
-
-    def gaps(self) -> Floats:
-        """Return how long each command was not followed by another, or the poses went on [s], [N]."""
-        return np.diff(self.t, append=max(float(self.t[-1]), float(self.stop[-1])))
-
-
-def waited(pieces: Sequence[Piece], slowest: float) -> float | None:
+def waited(pieces: Sequence[CommandedMotion], slowest: float) -> float | None:
     """Return how long [s] a command lasts that is not repeated; None where too little shows it.
 
     Args:
@@ -89,7 +50,7 @@ def waited(pieces: Sequence[Piece], slowest: float) -> float | None:
     return float(_WAITS[best]) if silences >= _FEWEST and errors[best] < _LEFT * errors[-1] else None
 
 
-def _near(piece: Piece, moves: Bools) -> Bools:
+def _near(piece: CommandedMotion, moves: Bools) -> Bools:
     """Say which steps [K] are around a silence after a command to move."""
     gaps = piece.gaps()
     silent = moves & (gaps > _SILENCE)
@@ -101,7 +62,7 @@ def _near(piece: Piece, moves: Bools) -> Bools:
     return np.asarray((np.cumsum(inside)[:-1] > 0) & (piece.start > piece.t[0] + _SETTLED))
 
 
-def _answers(piece: Piece, channel: int, near: Bools) -> Iterator[Floats]:
+def _answers(piece: CommandedMotion, channel: int, near: Bools) -> Iterator[Floats]:
     """Give what drives that follow a command to the full do in some steps, [K, waits, lags] of each delay."""
     grid = np.arange(piece.t[0], piece.stop[-1] + _STEP, _STEP)
     middle = grid + 0.5 * _STEP
