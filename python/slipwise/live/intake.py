@@ -14,6 +14,7 @@ from slipwise.live.command_ends import CommandEnds
 from slipwise.live.command_stops import SAID_EVERY, LiveCommandStops
 from slipwise.live.gates import Gates
 from slipwise.live.move_adviser import Turning
+from slipwise.live.pose_steps import PoseSteps
 from slipwise.live.recent_log import RecentLog
 from slipwise.live.said import Said
 from slipwise.live.samples import (
@@ -57,6 +58,7 @@ class Intake:
         self._input = Command if input_name == "command" else Wheels
         looks = input_name == "command" and command_timeout is None
         self._stops = LiveCommandStops(learner.settings.segment.unknown_after) if looks else None
+        self._pose_steps = PoseSteps()
         self._recent = RecentLog(input_name, learner.settings.segment.unknown_after)
         self._clock = ClockWatch()
         self.surfaces = SurfaceWatch(learner, said)
@@ -107,6 +109,7 @@ class Intake:
             self.surfaces.start_run(f"after the clock was set at {self._clock.newest:.3f} s")
             self._ends.restart()
             self._recent.restart()
+            self._pose_steps.restart()
             if self._stops is not None:
                 self._stops.restart()
         for each in taken:
@@ -127,6 +130,9 @@ class Intake:
 
     def contradictions(self) -> tuple[Finding, ...]:
         """Return what a stream shows that the learner does not keep, such as how commands end."""
+        no_seconds = self._pose_steps.found()
+        if no_seconds is not None:  # all else follows from it
+            return (no_seconds,)
         stops = () if self._stops is None else self._stops.found()
         return (*stops, *self._recent.found())
 
@@ -143,6 +149,7 @@ class Intake:
         self._ends.restart()
         self._gates.restart()
         self._recent.restart()
+        self._pose_steps.restart()
         if self._stops is not None:
             self._stops.restart()
 
@@ -206,17 +213,26 @@ class Intake:
             if self._level and was_measured(pose.roll) and was_measured(pose.pitch):
                 self._said.once(pose.t, "attitude", TILTED_LATER)
         number = self._frame_number(pose.frame)
+        self._pose_steps.take(pose.t)
         if self._stops is not None:
             self._stops.take_pose(pose, number)
-            self._say_stops(pose.t)
+        self._say_steps(pose.t)
         self._learn(pose, number, learned=learned)
 
-    def _say_stops(self, t: float) -> None:
-        """Say where commands come so rarely that little or nothing can be learned of them."""
-        if self._stops is None or self._looked_at <= t < self._looked_at + SAID_EVERY:
+    def _say_steps(self, t: float) -> None:
+        """Say where stamps are not in seconds, or commands come so rarely that little can be learned."""
+        found = self._pose_steps.found()
+        if found is not None:
+            words = f"{found.sentence}. {found.advice[0][0].upper()}{found.advice[0][1:]}."
+            self._said.begins(t, "seconds", words, error=True)
+        elif self._stops is not None and self._pose_steps.enough:
+            self._say_stops(self._stops, t)
+
+    def _say_stops(self, stops: LiveCommandStops, t: float) -> None:
+        if self._looked_at <= t < self._looked_at + SAID_EVERY:
             return
         self._looked_at = t
-        words = self._stops.words()
+        words = stops.words()
         if words:
             self._said.begins(t, "commands", words)
 

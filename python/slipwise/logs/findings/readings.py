@@ -3,7 +3,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.log import Floats
+
+_SLOWEST = 10.0  # s between poses
+FEWEST_STEPS = 20  # steps; with fewer no such judgement is made
 
 
 class NotInSeconds(Check):
@@ -13,6 +19,15 @@ class NotInSeconds(Check):
     means = "stamps are in ms, us or ns, or do not go forward"
     shows = "poses are more than 10 s apart, or ten times as many out of order as in order"
     cure = "convert the column `t` to seconds"
+
+    @classmethod
+    def by(cls, steps: Floats) -> Finding | None:
+        """Say it of steps between poses [s]: no robot is measured every 10 s and slower."""
+        usual = float(np.median(steps)) if len(steps) >= FEWEST_STEPS else 0.0
+        if usual <= _SLOWEST:
+            return None
+        advice = "stamps must be in seconds, not in ms, us or ns"
+        return cls.found(f"poses are {usual:.3g} s apart", advice, evidence=usual)
 
 
 class AbsurdSpeeds(Check):
