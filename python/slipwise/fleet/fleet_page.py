@@ -19,7 +19,7 @@ from slipwise.fleet.findings import (
 )
 from slipwise.fleet.vehicle_numbers import logs_of, types_apart
 from slipwise.models.parameter_table import physical_name
-from slipwise.number_text import DASH
+from slipwise.number_text import DASH, count_text
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.markup import (
     bullets,
@@ -37,6 +37,7 @@ from slipwise.reporting.thinning import CURVE_POINTS, thinned
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7a4fa3", "#4d4d4d")
 FLEET = "#1b2430"
+_NAMED = 5  # alarms in a sentence
 SHOWN_AT_ONCE = 8  # charts of a section; the others are folded away
 _SHOWN = (  # heading, number of a vehicle, its scale and unit
     ("drives", "drives", 100.0, " %"),
@@ -150,15 +151,16 @@ def summary(
     vehicles = np.unique(columns["vehicle"])
     good = int(columns["good"][first].sum())
     hours = float(columns["seconds"][first].sum()) / 3600.0
-    alarms = [finding for each in findings for finding in each.findings if finding.alarm]
+    alarms = _by_chance(findings)
     tests = sum(len(each.findings) for each in findings)
     driven = (
         f"{len(keys)} logs of {len(vehicles)} vehicles, {number(hours)} h of driving; {good} with a good "
         "verdict."
     )
     tested = (
-        f"{len(alarms)} alarms of {tests} tests. A vehicle is compared with the others where there are three "
-        f"or more, its drift is tested from {FEWEST_LOGS} logs on."
+        f"{count_text(len(alarms), 'alarm')} of {count_text(tests, 'test')}{_whose(alarms)}. "
+        "A vehicle is compared with the others where there are three or more, "
+        f"its drift is tested from {FEWEST_LOGS} logs on."
     )
     warned = types_apart(columns)
     left = "1 log" if len(unusable) == 1 else f"{len(unusable)} logs"
@@ -182,12 +184,27 @@ def _least_words(findings: Sequence[ParameterFindings]) -> list[str]:
     return [words] if said else []
 
 
+def _by_chance(findings: Sequence[ParameterFindings]) -> list[Finding]:
+    """Return the alarms, the least likely by chance first."""
+    alarms = [finding for each in findings for finding in each.findings if finding.alarm]
+    return sorted(alarms, key=lambda finding: finding.chance)
+
+
+def _whose(alarms: Sequence[Finding]) -> str:
+    """Say which vehicles alarm and by what, the first few."""
+    if not alarms:
+        return ""
+    what = {"odd": "is unlike the others in", "drift": "drifts in"}
+    named = [f"{each.vehicle} {what[each.kind]} {physical_name(each.parameter)}" for each in alarms]
+    more = f" and {len(named) - _NAMED} more" if len(named) > _NAMED else ""
+    return f": {', '.join(named[:_NAMED])}{more}"
+
+
 def _alarms(findings: Sequence[ParameterFindings]) -> str:
     units = {each.parameter: each.unit for each in findings}
-    alarms = [finding for each in findings for finding in each.findings if finding.alarm]
+    alarms = _by_chance(findings)
     if not alarms:
         return missing("Nothing stands out.")
-    alarms.sort(key=lambda finding: finding.chance)
     return table(
         ("vehicle", "parameter", "what", "by", "standard deviation", "chance", "walk in a km", "now"),
         [_alarm_row(finding, units[finding.parameter]) for finding in alarms],

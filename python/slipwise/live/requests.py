@@ -28,6 +28,8 @@ def asked_commands(
         ValueError: numbers are missing.
     """
     asked = json.loads(content)
+    if not isinstance(asked, dict) or not {"commands", "ahead"} & set(asked):
+        raise ValueError(f"it has no commands: give [t, {', '.join(names)}] of each as 'commands'")
     horizon = float(asked.get("horizon") or horizon)
     if "ahead" not in asked:
         rows = np.array(asked["commands"], dtype=np.float64)

@@ -164,7 +164,8 @@ class RowReader:
         pose = {name: float(values[_NOW]) for name, values in columns.items()}
         if not {"x", "y"} <= set(pose):
             if pose:
-                notes.append(f"{_WHERE}: {', '.join(pose)} are used where x and y are there")
+                verb = "is" if len(pose) == 1 else "are"
+                notes.append(f"{_WHERE}: {', '.join(pose)} {verb} used where both x and y are there")
             return
         needed = [pose[name] for name in ("x", "y", "yaw") if name in pose]
         if not self._is_new(view, pose, needed):

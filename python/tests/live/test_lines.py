@@ -140,6 +140,16 @@ def test_what_is_half_there_is_counted_and_the_rest_of_the_line_is_used() -> Non
     assert "poses with a number missing or impossible" in said
 
 
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [('{"t": 1, "x": 1}', "x is used"), ('{"t": 1, "x": 1, "yaw": 0}', "x, yaw are used")],
+)
+def test_a_pose_without_both_coordinates_is_said(line: str, words: str) -> None:
+    reader = LineReader()
+    reader.read(line)
+    assert reader.notes == [f"lines: {words} where both x and y are there"]
+
+
 def test_a_pose_that_is_repeated_is_held_unless_it_is_said_to_be_new() -> None:
     reader = LineReader()
     line = '{"t": %s, "x": 1, "y": 2, "yaw": 3%s}'

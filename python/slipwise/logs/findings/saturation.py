@@ -53,19 +53,30 @@ class Saturated(Check):
         """Compare what was asked for long enough with what the wheels did, for speed and yaw rate."""
         if whole.input_name != "command":
             return None
+        found: list[Finding] = []
         for unit, what, column in (("m/s", "speed", "v"), ("rad/s", "yaw rate", "omega")):
             pairs = [_asked_and_done(run, column, whole.unknown_after) for run in whole.log.runs]
             cap = _cap(*np.concatenate([np.empty((2, 0)), *pairs], axis=1))
             if cap is not None:
-                return self.found(
-                    f"for {100.0 * cap.part:.0f} % of the driven time a {what} above {cap.speed:.2g} {unit} "
-                    f"is commanded (half of it above {cap.asked:.2g}), and the wheels stay at "
-                    f"{cap.speed:.2g}: the drive is saturated",
-                    f"Let the planner ask for no {what} above {cap.speed:.2g} {unit} (MPPI: vx_max, wz_max; "
-                    "DWB: max_vel_x, max_vel_theta), or raise the limit of the driver.",
-                    evidence=cap.speed,
-                )
-        return None
+                found.append(self.of(cap, what, unit))
+        if len(found) < 2:
+            return found[0] if found else None
+        sentence = "; ".join(each.sentence for each in found)
+        return self.found(
+            sentence, *(text for each in found for text in each.advice), evidence=found[0].evidence
+        )
+
+    @classmethod
+    def of(cls, cap: _Cap, what: str, unit: str) -> Finding:
+        """Say it of the speed or of the yaw rate."""
+        return cls.found(
+            f"for {100.0 * cap.part:.0f} % of the driven time a {what} above {cap.speed:.2g} {unit} "
+            f"is commanded (half of it above {cap.asked:.2g}), and the wheels stay at "
+            f"{cap.speed:.2g}: the drive is saturated",
+            f"Let the planner ask for no {what} above {cap.speed:.2g} {unit} (MPPI: vx_max, wz_max; "
+            "DWB: max_vel_x, max_vel_theta), or raise the limit of the driver.",
+            evidence=cap.speed,
+        )
 
 
 def _asked_and_done(run: Run, column: str, unknown_after: float) -> Floats:
