@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise.logs.findings.commanded_motion import CommandedMotion
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.findings.watchdog_fit import waited
+from slipwise.logs.findings.watchdog_fit import has_silence, waited
 from slipwise.logs.log import Bools, Floats, Inputs, Poses
 
 if TYPE_CHECKING:
@@ -23,7 +23,8 @@ _FEWEST = 10  # pieces of motion in a step of ages
 _NEW = 200  # steps, after which it is fitted again
 _MOST_GAPS = 100_000  # between commands
 _LEFT = 0.35  # of a command at most, where it has ended
-_KEPT, _APART = 6000, 0.1  # newest steps of poses, and s between two, from which the time is fitted
+_APART = 0.1  # s between poses from which the time is fitted
+_PART, _KEPT = 300.0, 6  # s, and how many newest parts with a silence
 
 
 class CommandStops:
@@ -58,14 +59,14 @@ class CommandStops:
         self._keep(CommandedMotion.between(commands, _thinned(poses)))
 
     def _keep(self, piece: CommandedMotion | None) -> None:
-        """Keep the newest steps."""
+        """Keep the newest parts in which commands are silent, and the last, which may go on."""
         if piece is None:
             return
-        if self._newest and self._newest[-1].t[-1] == piece.t[0]:
+        before = self._newest[-1] if self._newest else None
+        if before is not None and before.t[-1] == piece.t[0] and before.seconds < _PART:
             piece = self._newest.pop().followed_by(piece)
-        self._newest.append(piece.newest(_KEPT))
-        while sum(len(each.start) for each in self._newest[1:]) > _KEPT:
-            self._newest.pop(0)
+        *whole, last = [*self._newest, *piece.parts(_PART)]
+        self._newest = [*[each for each in whole if has_silence(each, _SLOWEST)][-_KEPT:], last]
 
     def after(self) -> float | None:
         """Return how long after a command the robot stops though no other came [s]; None where it goes on.

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,13 +46,19 @@ class CommandedMotion:
         """Middle of each step [s], [K]."""
         return 0.5 * (self.start + self.stop)
 
-    def newest(self, count: int) -> CommandedMotion:
-        """Return its newest steps, and the commands from then on."""
-        if len(self.start) <= count:
-            return self
-        first = max(int(np.searchsorted(self.t, self.start[-count], side="right")) - 1, 0)
-        steps = (self.start[-count:], self.stop[-count:], self.moved[-count:])
-        return CommandedMotion(self.t[first:], self.given[first:], *steps)
+    def parts(self, seconds: float) -> list[CommandedMotion]:
+        """Return parts of so many seconds, each with the commands from the one in force at its start on."""
+        number = np.floor((self.start - self.start[0]) / seconds)
+        first = [*np.flatnonzero(np.diff(number, prepend=-1.0)).tolist(), len(self.start)]
+        found = []
+        for begin, end in itertools.pairwise(first):
+            held = int(np.searchsorted(self.t, self.start[begin], side="right")) - 1
+            until = int(np.searchsorted(self.t, self.stop[end - 1], side="right"))
+            told = slice(max(held, 0), until if end < len(self.start) else None)
+            steps = slice(begin, end)
+            columns = (self.start[steps], self.stop[steps], self.moved[steps])
+            found.append(CommandedMotion(self.t[told], self.given[told], *columns))
+        return found
 
     def followed_by(self, after: CommandedMotion) -> CommandedMotion:
         """Return one piece of two, whose last and first command are the same."""
@@ -63,6 +70,11 @@ class CommandedMotion:
             (self.moved, after.moved),
         )
         return CommandedMotion(*map(np.concatenate, pairs))
+
+    @property
+    def seconds(self) -> float:
+        """From its first pose to its last [s]."""
+        return float(self.stop[-1] - self.start[0])
 
     def gaps(self) -> Floats:
         """Return how long each command was not followed by another, or the poses went on [s], [N]."""

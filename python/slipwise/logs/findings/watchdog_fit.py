@@ -50,6 +50,12 @@ def waited(pieces: Sequence[CommandedMotion], slowest: float) -> float | None:
     return float(_WAITS[best]) if silences >= _FEWEST and errors[best] < _LEFT * errors[-1] else None
 
 
+def has_silence(piece: CommandedMotion, slowest: float) -> bool:
+    """Say whether a command to move is followed by none for a while."""
+    moves = (np.abs(piece.given) > slowest).any(axis=1)
+    return bool((moves & (piece.gaps() > _SILENCE)).any())
+
+
 def _near(piece: CommandedMotion, moves: Bools) -> Bools:
     """Say which steps [K] are around a silence after a command to move."""
     gaps = piece.gaps()
