@@ -160,8 +160,7 @@ void bind_motion(nb::module_& m) {
           },
           "mean"_a, "covariance"_a,
           "Mean and covariance [parameters] without the place and clock of the pose sensor; delays to wheel speeds "
-          "that "
-          "are stamped late become those to the motion.")
+          "that are stamped late become those to the motion.")
       .def_prop_ro("wheelbase", [](const MotionModel& model) { return model.learned().wheelbase; })
       .def_prop_ro("basis", &MotionModel::basis)
       .def_prop_ro("dynamics", [](const MotionModel& model) { return model.learned().dynamics; })

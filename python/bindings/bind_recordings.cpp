@@ -145,8 +145,7 @@ void define_rows(nb::class_<Evidence>& evidence) {
           "windows", [](const Evidence& e) { return window_rows(std::invoke(&Evidence::windows, e)); },
           "Rows of (run, start, since, duration, distance, course, turn, turn_degrees, start_yaw), then (forward, "
           "sideways, rotation, known) of the commands and the same of the wheels, then the ways ahead and left along "
-          "the "
-          "measured heading, of poses that the gate accepted.")
+          "the measured heading, of poses that the gate accepted.")
       .def_prop_ro(
           "measured_windows",
           [](const Evidence& e) { return window_rows(std::invoke(&Evidence::measured_windows, e)); },

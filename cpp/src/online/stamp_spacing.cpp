@@ -6,25 +6,10 @@
 #include <cmath>
 #include <optional>
 #include <utility>
-#include <vector>
 
-#include "slipwise/motion/parameter_block.hpp"
+#include "slipwise/filter/base_link_model.hpp"
 
 namespace slipwise {
-namespace {
-
-/// Where the clock offset stands among the parameters, if it is learned.
-std::optional<Eigen::Index> place_of_offset(const MotionModel& model) {
-  if (!model.learned().clock_offset) {
-    return std::nullopt;
-  }
-  const std::vector<ParameterInfo> names = model.parameters();
-  const auto found = std::ranges::find(names, "clock_offset", &ParameterInfo::name);
-  return found == names.end() ? std::nullopt : std::optional<Eigen::Index>(found - names.begin());
-}
-
-}  // namespace
-
 std::shared_ptr<const MotionPosterior> supported(std::shared_ptr<const MotionPosterior> posterior, double seconds,
                                                  std::size_t segments) {
   const auto found = posterior == nullptr || segments == 0 ? std::nullopt : place_of_offset(posterior->model);

@@ -50,7 +50,7 @@ class Judgement:
     heading_ratio: Ratio
     still: Still | None  # None where nothing moved
     consistency: Consistency | None = None
-    told: tuple[float, float] = (0.0, 0.0)  # m and rad that the inputs move the robot by in a segment
+    commanded: tuple[float, float] = (0.0, 0.0)  # m and rad in a segment, by the inputs
 
     @property
     def hidden(self) -> dict[str, float]:
@@ -64,9 +64,11 @@ class Judgement:
             return {}
         shows = _SHOWS / math.sqrt(self.held_out.segments)
         return {
-            axis: shows * wrong / told
-            for axis, wrong, told, least in zip(("speed", "turns"), error, self.told, _DRIVEN, strict=True)
-            if told > least
+            axis: shows * wrong / motion
+            for axis, wrong, motion, least in zip(
+                ("speed", "turns"), error, self.commanded, _DRIVEN, strict=True
+            )
+            if motion > least
         }
 
     @property

@@ -111,8 +111,7 @@ def _axes(rows: Floats, sensor: PoseSensor) -> dict[str, _Axis]:
 def _speeds_of_positions(rows: Floats, turns: Callable[[int], Fit], sensor_y: float, first: int) -> SquareFit:
     """Fit inputs to squares of speeds; how far a window turned is what comes of the inputs' turns.
 
-    A sensor ahead of the body's centre swings out in turns, by nobody knows how much; its squares add.
-
+    A sensor ahead of the body's centre swings out in turns by an unknown way, whose squares add.
     Where a window turns far, or the turning changes much, a chord tells no way: such windows are left out.
     """
     duration, places, follows = rows[:, DURATION], _places(rows, first), follows_before(rows)

@@ -105,13 +105,8 @@ class Intake:
         if clock is Clock.SET_BACK:
             self._said.note(self._clock.newest, ClockSetBack.by(self._clock.set_back_by).sentence)
             self._said.count("the clock was set back")
-            self._gates.restart()
             self.surfaces.start_run(f"after the clock was set at {self._clock.newest:.3f} s")
-            self._ends.restart()
-            self._recent.restart()
-            self._pose_steps.restart()
-            if self._stops is not None:
-                self._stops.restart()
+            self._restart_streams()
         for each in taken:
             self._keep(each)
             for zero in self._ends.before(each):
@@ -146,6 +141,10 @@ class Intake:
 
     def _restart(self) -> None:
         self._clock.restart()
+        self._restart_streams()
+
+    def _restart_streams(self) -> None:
+        """Stamps begin again."""
         self._ends.restart()
         self._gates.restart()
         self._recent.restart()

@@ -9,7 +9,7 @@ from collections import deque
 import numpy as np
 
 from slipwise.logs.findings.finding import Finding
-from slipwise.logs.findings.readings import FEWEST_STEPS, NotInSeconds
+from slipwise.logs.findings.readings import FEWEST_STEPS, SLOWEST, NotInSeconds
 
 _LOOKED_AT = 200  # newest steps
 
@@ -34,9 +34,11 @@ class PoseSteps:
 
     @property
     def enough(self) -> bool:
-        """Whether it can be told."""
+        """Whether there are enough of them to say it."""
         return len(self._steps) >= FEWEST_STEPS
 
     def found(self) -> Finding | None:
         """Say it where no robot is measured so rarely."""
+        if max(self._steps, default=0.0) <= SLOWEST:  # as nearly always: no median is above
+            return None
         return NotInSeconds.by(np.array(self._steps))

@@ -208,12 +208,12 @@ def test_a_verdict_against_its_own_figures_says_why() -> None:
 
 def test_errors_that_hide_a_slip_are_no_sign_of_a_robot_without_one() -> None:
     chance = judged((0.99, 0.9, 1.1), (1.0, 0.9, 1.1), windows=49)  # errors of 1 m and 1 rad
-    (text, *_) = give_verdict(replace(chance, told=(4.0, 1.0)), Identified(2, ()), facts()).advice
+    (text, *_) = give_verdict(replace(chance, commanded=(4.0, 1.0)), Identified(2, ()), facts()).advice
     assert "hide a steady slip of 10 % of the speed or 40 % of the turns" in text
     assert "Record poses with less noise" in text
     assert "use the kinematic baseline" not in text
-    for told in ((40.0, 20.0), (40.0, 0.1)):  # small errors, and a drive that never turns
-        clear = give_verdict(replace(chance, told=told), Identified(2, ()), facts())
+    for commanded in ((40.0, 20.0), (40.0, 0.1)):  # small errors, and a drive that never turns
+        clear = give_verdict(replace(chance, commanded=commanded), Identified(2, ()), facts())
         assert clear.advice[0].startswith("This robot follows its commands as they are")
 
 

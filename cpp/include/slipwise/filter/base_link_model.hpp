@@ -2,12 +2,18 @@
 // What a robot does, without the place and the clock of the sensor that showed it.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
+
 #include "slipwise/filter/estimate.hpp"
 #include "slipwise/motion/motion_model.hpp"
 
 namespace slipwise {
 
-/// A model and what is known of its parameters.
+/// Where the clock offset stands among the parameters, if it is learned.
+std::optional<Eigen::Index> place_of_offset(const MotionModel& model);
+
+/// A model and its parameters.
 struct KnownModel {
   MotionModel model;
   Estimate estimate;

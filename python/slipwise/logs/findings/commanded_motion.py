@@ -54,10 +54,10 @@ class CommandedMotion:
         for begin, end in itertools.pairwise(first):
             held = int(np.searchsorted(self.t, self.start[begin], side="right")) - 1
             until = int(np.searchsorted(self.t, self.stop[end - 1], side="right"))
-            told = slice(max(held, 0), until if end < len(self.start) else None)
+            commands = slice(max(held, 0), until if end < len(self.start) else None)
             steps = slice(begin, end)
             columns = (self.start[steps], self.stop[steps], self.moved[steps])
-            found.append(CommandedMotion(self.t[told], self.given[told], *columns))
+            found.append(CommandedMotion(self.t[commands], self.given[commands], *columns))
         return found
 
     def followed_by(self, after: CommandedMotion) -> CommandedMotion:

@@ -8,7 +8,7 @@ import numpy as np
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.log import Floats
 
-_SLOWEST = 10.0  # s between poses
+SLOWEST = 10.0  # s between poses
 FEWEST_STEPS = 20  # steps; with fewer no such judgement is made
 
 
@@ -24,7 +24,7 @@ class NotInSeconds(Check):
     def by(cls, steps: Floats) -> Finding | None:
         """Say it of steps between poses [s]: no robot is measured every 10 s and slower."""
         usual = float(np.median(steps)) if len(steps) >= FEWEST_STEPS else 0.0
-        if usual <= _SLOWEST:
+        if usual <= SLOWEST:
             return None
         advice = "stamps must be in seconds, not in ms, us or ns"
         return cls.found(f"poses are {usual:.3g} s apart", advice, evidence=usual)
