@@ -210,21 +210,23 @@ void bind_car(nb::module_& m) {
       .def(
           "__init__",
           [](CarCurves* self, KnotCurve speed, KnotCurve curvature, double lag, double steering_lag,
-             double cornering_drag, double understeer) {
+             double cornering_drag, double understeer, double delay) {
             new (self) CarCurves{.speed = std::move(speed),
                                  .curvature = std::move(curvature),
                                  .lag = lag,
                                  .steering_lag = steering_lag,
                                  .cornering_drag = cornering_drag,
-                                 .understeer = understeer};
+                                 .understeer = understeer,
+                                 .delay = delay};
           },
-          "speed"_a, "curvature"_a, "lag"_a, "steering_lag"_a, "cornering_drag"_a, "understeer"_a)
+          "speed"_a, "curvature"_a, "lag"_a, "steering_lag"_a, "cornering_drag"_a, "understeer"_a, "delay"_a = 0.0)
       .def_ro("speed", &CarCurves::speed)
       .def_ro("curvature", &CarCurves::curvature)
       .def_ro("lag", &CarCurves::lag)
       .def_ro("steering_lag", &CarCurves::steering_lag)
       .def_ro("cornering_drag", &CarCurves::cornering_drag)
       .def_ro("understeer", &CarCurves::understeer)
+      .def_ro("delay", &CarCurves::delay)
       .def(
           "twists",
           [](const CarCurves& self, const InputHistory& commands, double start,
@@ -259,7 +261,7 @@ void bind_car(nb::module_& m) {
       .def("with_spread", &with_spread, "covariance"_a, "prior_std"_a,
            "The same car, whose `numbers` are uncertain so much.")
       .def_prop_ro("numbers", &car_numbers,
-                   "Speed and curvature at the knots, lag, steering lag, drag of cornering, understeer.")
+                   "Speed and curvature at the knots, lag, steering lag, drag of cornering, understeer, delay.")
       .def_prop_ro(
           "covariance",
           [](const CarCurves& self) { return self.spread ? std::optional(self.spread->covariance) : std::nullopt; },

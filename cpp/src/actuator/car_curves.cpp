@@ -62,6 +62,15 @@ class Drive {
  public:
   Drive(const CarCurves& car, const CarSpan& span) : car_(car), span_(span) {}
 
+  /// Until `to` [s], where it hears its first command: a car that was measured before goes on as it was.
+  void keep(double to) {
+    if (span_.measured && later(to, span_.measured->t) && later(to, span_.start)) {
+      const double from = std::max(span_.measured->t, span_.start);
+      state_.speed = span_.measured->speed;
+      set_ = true;
+      pieces_.add(from, with_rest(car_twist(car_, state_), 0.5 * (from + to)), to - from);
+    }
+  }
   /// Under a command held over [from, to] [s].
   void hold(const BodyTwist& command, double from, double to) {
     double now = from;
@@ -132,6 +141,7 @@ void set_numbers(CarCurves& car, const Eigen::VectorXd& numbers) {
   car.steering_lag = numbers[speeds + curvatures + 1];
   car.cornering_drag = numbers[speeds + curvatures + 2];
   car.understeer = numbers[speeds + curvatures + 3];
+  car.delay = numbers[speeds + curvatures + 4];
 }
 
 /// Precision of the prior of a curve's values at `at`, and of a number after them, from their standard deviations:
@@ -187,23 +197,23 @@ Eigen::MatrixXd unknown_covariance(const CarCurves& car) {
   };
   put(car.speed, 0, single + 2);
   put(car.curvature, speeds, single + 3);
-  for (const Eigen::Index lag : {single, single + 1}) {
-    precision(lag, lag) = prior[lag] > 0.0 ? 1.0 / (prior[lag] * prior[lag]) : 0.0;
+  for (const Eigen::Index time : {single, single + 1, single + 4}) {
+    precision(time, time) = prior[time] > 0.0 ? 1.0 / (prior[time] * prior[time]) : 0.0;
   }
   return covariance * precision * covariance;
 }
 
 /// [s] after which a car has forgotten its earlier commands.
-double settling(const CarCurves& car) { return 10.0 * std::max(car.lag, car.steering_lag) + 1.0; }
+double settling(const CarCurves& car) { return 10.0 * std::max(car.lag, car.steering_lag) + car.delay + 1.0; }
 
 }  // namespace
 
 Eigen::VectorXd car_numbers(const CarCurves& car) {
   const Eigen::Index speeds = std::ssize(car.speed.value), curvatures = std::ssize(car.curvature.value);
-  Eigen::VectorXd numbers(speeds + curvatures + 4);
+  Eigen::VectorXd numbers(speeds + curvatures + 5);
   std::ranges::copy(car.speed.value, numbers.begin());
   std::ranges::copy(car.curvature.value, numbers.begin() + speeds);
-  numbers.tail<4>() << car.lag, car.steering_lag, car.cornering_drag, car.understeer;
+  numbers.tail<5>() << car.lag, car.steering_lag, car.cornering_drag, car.understeer, car.delay;
   return numbers;
 }
 
@@ -220,10 +230,10 @@ CarDeviations car_deviations(const CarCurves& car, const InputHistory& commands)
   }
   const Eigen::VectorXd mean = car_numbers(car);
   const Eigen::MatrixXd unknown = unknown_covariance(car);
-  const Eigen::Index speeds = std::ssize(car.speed.value), single = mean.size() - 4;
+  const Eigen::Index speeds = std::ssize(car.speed.value), single = mean.size() - 5;
   const auto [first_speed, last_speed] = knots_between(car.speed, low.v, high.v);
   const auto [first_turn, last_turn] = knots_between(car.curvature, low.omega, high.omega);
-  std::array<std::vector<Eigen::Index>, 4> blocks{{{single + 2}, {single + 3}, {single}, {single + 1}}};
+  std::array<std::vector<Eigen::Index>, 3> blocks{{{single + 2}, {single + 3}, {single, single + 1, single + 4}}};
   for (Eigen::Index k = first_speed; k <= last_speed; ++k) {
     blocks[0].push_back(k);
   }
@@ -247,7 +257,9 @@ CarDeviations car_deviations(const CarCurves& car, const InputHistory& commands)
           numbers[block[static_cast<std::size_t>(k)]] +=
               kDeviation * std::sqrt(directions.values[i]) * directions.vectors(k, i);
         }
-        numbers.segment<2>(single) = numbers.segment<2>(single).cwiseMax(0.0);
+        for (const Eigen::Index time : {single, single + 1, single + 4}) {
+          numbers[time] = std::max(numbers[time], 0.0);
+        }
         set_numbers(found.cars.emplace_back(car), numbers);
       }
     }
@@ -293,10 +305,13 @@ CarState advanced(const CarCurves& car, const CarState& state, const BodyTwist& 
 InputHistory car_twists(const CarCurves& car, const InputHistory& commands, const CarSpan& span) {
   const double begin = std::min(span.start, span.measured ? span.measured->t : span.start) - settling(car);
   Drive drive(car, span);
-  for (std::size_t i = 0; i < commands.size() && commands.time(i) < span.end; ++i) {
-    const double next = i + 1 < commands.size() ? std::min(commands.time(i + 1), span.end) : span.end;
+  if (commands.size() > 0) {
+    drive.keep(std::min(commands.time(0) + car.delay, span.end));
+  }
+  for (std::size_t i = 0; i < commands.size() && commands.time(i) + car.delay < span.end; ++i) {
+    const double next = i + 1 < commands.size() ? std::min(commands.time(i + 1) + car.delay, span.end) : span.end;
     if (next > begin) {
-      drive.hold(commands.sample(i), std::max(commands.time(i), begin), next);
+      drive.hold(commands.sample(i), std::max(commands.time(i) + car.delay, begin), next);
     }
   }
   return std::move(drive).inputs();

@@ -20,7 +20,9 @@ namespace {
 SLIPWISE_TUNING(kAlike, 0.2);  // examples next to each other are alike: each counts as so many
 SLIPWISE_TUNING(kNoiseExamples, 20.0);
 SLIPWISE_TUNING(kChanged, 0.1);  // prior weight of a curve that begins again with a run, over that of one that goes on
-constexpr double kHuber = 2.0;   // standard deviations, beyond which errors count less
+constexpr double kFar = 20.0;    // of the logarithm of a likelihood, behind the best
+constexpr std::size_t kSeldom = 8;  // solutions of the others, from one of such a candidate to the next
+constexpr double kHuber = 2.0;      // standard deviations, beyond which errors count less
 constexpr std::size_t kCopies = 3;  // at most
 
 }  // namespace
@@ -60,7 +62,13 @@ void CurveBank::learn(const Eigen::MatrixXd& features, double output) {
 
 void CurveBank::solve() {
   const Eigen::Index d = prior_.size();
+  const Eigen::VectorXd likely = log_likelihoods();
+  const double least = likely.maxCoeff() - kFar;
+  const bool all = solved_++ % kSeldom == 0;
   for (std::size_t k = 0; k < weights_.size(); ++k) {
+    if (!all && likely[static_cast<Eigen::Index>(k)] < least) {
+      continue;
+    }
     // A weight that may be negative is the difference of two that may not.
     Eigen::MatrixXd a(d + free_, d + free_);
     Eigen::VectorXd b(d + free_);
@@ -72,7 +80,9 @@ void CurveBank::solve() {
     a.bottomRightCorner(free_, free_) = a.topLeftCorner(free_, free_);
     a.bottomRightCorner(free_, free_).diagonal() += 1e-6 * precision_.head(free_);
     b.tail(free_) = -b.head(free_);
-    const Eigen::VectorXd x = nonnegative_solution(a, b);
+    Eigen::VectorXd near(d + free_);
+    near << weights_[k], -weights_[k].head(free_);
+    const Eigen::VectorXd x = nonnegative_solution(a, b, near.cwiseMax(0.0));
     weights_[k] = x.head(d);
     weights_[k].head(free_) -= x.tail(free_);
   }
@@ -94,8 +104,8 @@ Eigen::VectorXd CurveBank::log_likelihoods() const {
   return logarithm;
 }
 
-Eigen::MatrixXd CurveBank::covariance() const {
-  Eigen::MatrixXd information = information_[best()] / variance(best());
+Eigen::MatrixXd CurveBank::covariance(std::size_t k) const {
+  Eigen::MatrixXd information = information_[k] / variance(k);
   information.diagonal() += precision_;
   return Cholesky(information).inverse();
 }

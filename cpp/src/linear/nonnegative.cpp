@@ -41,8 +41,8 @@ void step_to_border(Eigen::VectorXd& x, const Eigen::VectorXd& target, std::vect
 
 }  // namespace
 
-Eigen::VectorXd nonnegative_solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
-  if (a.rows() != b.size() || a.cols() != b.size() || !Cholesky(a).positive_definite()) {
+Eigen::VectorXd nonnegative_solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, const Eigen::VectorXd& near) {
+  if (a.rows() != b.size() || a.cols() != b.size() || near.size() != b.size() || !Cholesky(a).positive_definite()) {
     throw std::invalid_argument("non-negative least squares needs a positive definite matrix of the vector's size");
   }
   // Unit diagonal: variances of metres and of radians differ by orders of magnitude.
@@ -50,8 +50,22 @@ Eigen::VectorXd nonnegative_solution(const Eigen::MatrixXd& a, const Eigen::Vect
   const Eigen::MatrixXd scaled = scale.asDiagonal() * a * scale.asDiagonal();
   const Eigen::VectorXd target = scale.asDiagonal() * b;
   const double tolerance = 1e-12 * std::max(target.lpNorm<Eigen::Infinity>(), 1e-300);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
+  Eigen::VectorXd x = near.cwiseMax(0.0).cwiseQuotient(scale);
   std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    if (x[i] > 0.0) {
+      free.push_back(i);
+    }
+  }
+  const auto solve_free = [&] {
+    Eigen::VectorXd next = restricted_solution(scaled, target, free);
+    while (std::ranges::any_of(free, [&](Eigen::Index i) { return next[i] <= 0.0; })) {
+      step_to_border(x, next, free);
+      next = restricted_solution(scaled, target, free);
+    }
+    x = next;
+  };
+  solve_free();
   for (Eigen::Index round = 0; round < 3 * b.size(); ++round) {
     Eigen::VectorXd downhill = target - scaled * x;
     for (const Eigen::Index i : free) {
@@ -62,12 +76,7 @@ Eigen::VectorXd nonnegative_solution(const Eigen::MatrixXd& a, const Eigen::Vect
       break;
     }
     free.push_back(enter);
-    Eigen::VectorXd next = restricted_solution(scaled, target, free);
-    while (std::ranges::any_of(free, [&](Eigen::Index i) { return next[i] <= 0.0; })) {
-      step_to_border(x, next, free);
-      next = restricted_solution(scaled, target, free);
-    }
-    x = next;
+    solve_free();
   }
   return scale.asDiagonal() * x;
 }

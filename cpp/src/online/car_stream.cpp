@@ -95,7 +95,7 @@ void CarStream::push_pose(const MeasuredPose& pose) {
     return;
   }
   const bool given = !given_.unknown_since(filter_.until(), pose.t).has_value();
-  const InputHistory commands = given_.slice(filter_.until(), pose.t, SliceKind::Commands);
+  const InputHistory commands = given_.slice(filter_.until() - CarCurveFilter::reach(), pose.t, SliceKind::Commands);
   std::optional<BodyTwist> measured;
   if (joined && given) {
     const Pose2 moved = between({since_->x, since_->y, since_->yaw}, {pose.x, pose.y, pose.yaw});

@@ -82,21 +82,70 @@ double steering_of(const CarCurves& car, const DriveCommand& drive) {
   return 0.5 * (low + high);
 }
 
-/// Where the car of a start begins; adds the twists of its past.
+/// What cars do is the mean of what they would do without their delay so many periods before, and one more before that.
+struct LatePeriods {
+  std::size_t whole;
+  double part;  ///< of the earlier one
+
+  LatePeriods(double delay, double period)
+      : whole(static_cast<std::size_t>(delay / period + 1e-9)),
+        part(std::max(delay / period - static_cast<double>(whole), 0.0)) {}
+  bool none() const { return whole == 0 && part == 0.0; }
+  /// Periods before the past that are asked for.
+  std::size_t reach() const { return whole + 1; }
+};
+
+/// Where the car of a start begins, without its delay; adds its twists: as it drives for the reach of the delay, then
+/// those of the past. What was sent in the time of the delay has not acted at the start.
 template <typename Scalar>
 CarState begin_of(const CarCurves& car, const RolloutBatch<Scalar>& batch, std::size_t start, double period,
-                  std::vector<DriveCommand>& past) {
+                  std::vector<DriveCommand>& twists) {
   const DriveCommand& drive = batch.starts[start].drive;
   const std::size_t sent = batch.past.size() / batch.starts.size();
+  twists.insert(twists.end(), LatePeriods(car.delay, period).reach(), drive);
   CarState state{.speed = drive.v, .steering = sent > 0 ? batch.past[start * sent].omega : steering_of(car, drive)};
   for (std::size_t k = 0; k < sent; ++k) {
     const DriveCommand& command = batch.past[start * sent + k];
-    const CarState after = driven(car, state, {.v = command.v, .vy = 0.0, .omega = command.omega}, period);
-    state = {.speed = drive.v, .steering = after.steering};
-    const BodyTwist at_speed = car_twist(car, state);
-    past.push_back({.v = at_speed.v, .omega = at_speed.omega});
+    const BodyTwist held{.v = command.v, .vy = 0.0, .omega = command.omega};
+    const double pending = std::clamp(car.delay / period - static_cast<double>(sent - k - 1), 0.0, 1.0);  // of a period
+    if (pending < 1.0) {
+      state = {.speed = drive.v, .steering = driven(car, state, held, (1.0 - pending) * period).steering};
+    }
+    double speed = state.speed;
+    if (pending > 0.0) {
+      state = driven(car, state, held, pending * period);
+      speed += 0.5 * pending * (state.speed - speed);
+    }
+    const BodyTwist twist = car_twist(car, {.speed = speed, .steering = state.steering});
+    twists.push_back({.v = twist.v, .omega = twist.omega});
   }
   return state;
+}
+
+/// Makes twists without a delay those with it; `before` are the earlier ones of each start, of which the past's follow.
+template <typename Scalar>
+void delay_twists(const LatePeriods& late, std::size_t rollouts, const std::vector<DriveCommand>& before,
+                  std::size_t starts, CarBatch<Scalar>& batch) {
+  const std::size_t known = before.size() / starts, periods = batch.v.size() / std::max<std::size_t>(rollouts, 1);
+  const auto now = static_cast<Scalar>(1.0 - late.part), earlier = static_cast<Scalar>(late.part);
+  for (std::size_t k = late.none() ? known : periods + known; k-- > known;) {
+    for (std::size_t r = 0; r < rollouts; ++r) {
+      const DriveCommand* own = before.data() + (starts == 1 ? 0 : r) * known;
+      const auto from = [&](std::size_t i, std::vector<Scalar>& values, double DriveCommand::* number) {
+        return i < known ? static_cast<Scalar>(own[i].*number) : values[(i - known) * rollouts + r];
+      };
+      const std::size_t at = (k - known) * rollouts + r, i = k - late.whole;
+      batch.v[at] = now * from(i, batch.v, &DriveCommand::v) + earlier * from(i - 1, batch.v, &DriveCommand::v);
+      batch.omega[at] =
+          now * from(i, batch.omega, &DriveCommand::omega) + earlier * from(i - 1, batch.omega, &DriveCommand::omega);
+    }
+  }
+  for (std::size_t start = 0; start < starts; ++start) {
+    for (std::size_t i = start * known + 1; i + late.whole < (start + 1) * known; ++i) {
+      batch.past.push_back({.v = (1.0 - late.part) * before[i].v + late.part * before[i - 1].v,
+                            .omega = (1.0 - late.part) * before[i].omega + late.part * before[i - 1].omega});
+    }
+  }
 }
 
 template <typename Scalar>
@@ -135,8 +184,9 @@ CarBatch<Scalar> car_batch(const CarCurves& car, const RolloutBatch<Scalar>& bat
   const std::size_t starts = batch.starts.size(), size = batch.rollouts * batch.periods;
   CarBatch<Scalar> result{std::vector<Scalar>(size), std::vector<Scalar>(size), {}};
   std::vector<CarState> begin;
+  std::vector<DriveCommand> before;
   for (std::size_t i = 0; i < starts; ++i) {
-    begin.push_back(begin_of(car, batch, i, period, result.past));
+    begin.push_back(begin_of(car, batch, i, period, before));
   }
   const CurveNumbers<Scalar> speed(car.speed), curvature(car.curvature);
   LaneCarJob<Scalar> job = job_of(car, batch, period);
@@ -157,6 +207,7 @@ CarBatch<Scalar> car_batch(const CarCurves& car, const RolloutBatch<Scalar>& bat
       kernel.drive_cars(job, {.speed = speeds.data(), .steering = steerings.data(), .first = first, .count = count});
     }
   });
+  delay_twists(LatePeriods(car.delay, period), batch.rollouts, before, starts, result);
   return result;
 }
 

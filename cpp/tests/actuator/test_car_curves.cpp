@@ -105,6 +105,22 @@ TEST_CASE("a measured motion is gone on from, and what the curves do not say die
   CHECK(std::abs(last_of(twists).omega) < 0.4 * std::exp(-3.5));
 }
 
+TEST_CASE("a car that hears its commands late does the same later, and goes on as it was measured until it hears") {
+  CarCurves late = sample_car();
+  late.delay = 0.3;
+  const InputHistory prompt = car_twists(sample_car(), held(0.6, 0.5), {.start = 0.0, .end = 2.0});
+  const InputHistory delayed = car_twists(late, held(0.6, 0.5), {.start = 0.0, .end = 2.3});
+  CHECK(delayed.at(0.25).v == 0.0);
+  for (double t = 0.03; t < 1.9; t += 0.06) {  // amid pieces
+    CHECK(delayed.at(t + 0.3).v == doctest::Approx(prompt.at(t).v));
+    CHECK(delayed.at(t + 0.3).omega == doctest::Approx(prompt.at(t).omega));
+  }
+  const KnownMotion measured{.t = 0.1, .speed = 1.5};
+  const InputHistory moving = car_twists(late, held(0.0, 0.0), {.start = 0.1, .end = 1.0, .measured = measured});
+  CHECK(moving.at(0.25).v == 1.5);
+  CHECK(moving.at(0.45).v < 1.4);
+}
+
 TEST_CASE("commands later than a moment change nothing before it") {
   const CarCurves car = sample_car();
   const InputHistory one({0.0}, {{.v = 0.6, .vy = 0.0, .omega = 0.2}});

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <random>
@@ -31,7 +32,7 @@ struct Drive {
   std::vector<BodyTwist> twists;  ///< means over each fifth of a second
 };
 
-/// Throttles of [0, 0.6] and any steering, each held for a second and a half.
+/// Throttles of [0, 0.6] and any steering, each held for a second and a half, and heard after the car's delay.
 Drive random_drive(const CarCurves& car, double seconds, double noise, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> throttle(0.0, 0.6), steering(-1.0, 1.0);
@@ -50,7 +51,8 @@ Drive random_drive(const CarCurves& car, double seconds, double noise, unsigned 
     command.push_back(now);
     constexpr int kFine = 10;
     for (int k = 0; k < kFine; ++k) {
-      state = advanced(car, state, now, kStep / kFine);
+      const double heard = std::floor(i + (static_cast<double>(k) / kFine) - (car.delay / kStep) + 1e-9);
+      state = advanced(car, state, heard < 0.0 ? BodyTwist{} : command[static_cast<std::size_t>(heard)], kStep / kFine);
       sum.v += car_twist(car, state).v / kFine;
       sum.omega += car_twist(car, state).omega / kFine;
     }
@@ -76,7 +78,7 @@ TEST_CASE("a curve is sure where the car drove and as its prior where it did not
   const CarCurves found = learned(random_drive(true_car(), 240.0, 0.02, 7), 10000).curves();
   REQUIRE(found.spread != nullptr);
   const Eigen::VectorXd std = found.spread->covariance.diagonal().cwiseSqrt();
-  const Eigen::Index speeds = std::ssize(found.speed.at), last = speeds - 1, single = std.size() - 4;
+  const Eigen::Index speeds = std::ssize(found.speed.at), last = speeds - 1, single = std.size() - 5;
   CHECK(std[last] > 0.5 * found.spread->prior_std[last]);
   CHECK(std[last] == doctest::Approx(found.speed.std.back()));
   for (Eigen::Index k = 0; k < speeds; ++k) {
@@ -85,11 +87,30 @@ TEST_CASE("a curve is sure where the car drove and as its prior where it did not
       CHECK(std[k] < 0.1);
     }
   }
-  CHECK(std[single] > 0.03);
+  CHECK(std[single] > 0.01);
   CHECK(std[single] < 0.2);
   CHECK(std::abs(found.lag - 0.4) < 3.0 * std[single]);
   CHECK(std::abs(found.cornering_drag - 0.15) < 4.0 * std[single + 2]);
   CHECK(std::abs(found.understeer - 0.08) < 4.0 * std[single + 3]);
+}
+
+TEST_CASE("lags and a delay of throttle and steering are told apart, and known as well as they say") {
+  for (const auto& [lag, steering_lag, delay] :
+       {std::array{0.4, 0.1, 0.1}, std::array{0.27, 0.06, 0.0}, std::array{0.42, 0.14, 0.07},
+        std::array{0.66, 0.09, 0.12}, std::array{0.9, 0.18, 0.2}}) {
+    CarCurves car = true_car();
+    car.lag = lag;
+    car.steering_lag = steering_lag;
+    car.delay = delay;
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      const CarCurves found = learned(random_drive(car, 240.0, 0.02, seed), 10000).curves();
+      const Eigen::VectorXd std = found.spread->covariance.diagonal().cwiseSqrt().tail<5>();
+      CHECK(std::abs(found.lag - lag) < 3.0 * std[0]);
+      CHECK(std::abs(found.steering_lag - steering_lag) < 3.0 * std[1]);
+      CHECK(std::abs(found.delay - delay) < 3.0 * std[4]);
+      CHECK(std::abs(found.lag + found.delay - lag - delay) < 0.01 + 0.05 * (lag + delay));
+    }
+  }
 }
 
 TEST_CASE("the curves of a car with a dead zone are found where it drove") {

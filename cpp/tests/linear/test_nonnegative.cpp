@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <random>
 #include <stdexcept>
 
@@ -19,7 +20,8 @@ TEST_CASE("the solution of random problems meets the conditions of the optimum")
     const Eigen::MatrixXd rows = Eigen::MatrixXd::NullaryExpr(8, 6, [&]() { return normal(random); });
     const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(6, [&]() { return normal(random); });
     const Eigen::MatrixXd a = rows.transpose() * rows;
-    const Eigen::VectorXd x = nonnegative_solution(a, b);
+    const Eigen::VectorXd near = Eigen::VectorXd::NullaryExpr(6, [&]() { return std::max(0.0, normal(random)); });
+    const Eigen::VectorXd x = nonnegative_solution(a, b, problem % 2 == 0 ? Eigen::VectorXd::Zero(6) : near);
     const Eigen::VectorXd gradient = a * x - b;
     CHECK(x.minCoeff() >= 0.0);
     CHECK(gradient.minCoeff() > -1e-9);
@@ -30,8 +32,9 @@ TEST_CASE("the solution of random problems meets the conditions of the optimum")
 }
 
 TEST_CASE("a matrix that is not positive definite is refused") {
-  CHECK_THROWS_AS(nonnegative_solution(Eigen::MatrixXd::Zero(2, 2), Eigen::Vector2d(1, 1)), std::invalid_argument);
-  CHECK_THROWS_AS(nonnegative_solution(Eigen::MatrixXd::Identity(3, 3), Eigen::Vector2d(1, 1)), std::invalid_argument);
+  const Eigen::Vector2d ones(1, 1);
+  CHECK_THROWS_AS(nonnegative_solution(Eigen::MatrixXd::Zero(2, 2), ones, ones), std::invalid_argument);
+  CHECK_THROWS_AS(nonnegative_solution(Eigen::MatrixXd::Identity(3, 3), ones, ones), std::invalid_argument);
 }
 
 }  // namespace

@@ -84,6 +84,66 @@ TEST_CASE("steering sent before is still on its way, and twists of the past have
   CHECK(found.omega[kPeriods - 1] == doctest::Approx(0.0).epsilon(1e-3));
 }
 
+TEST_CASE("a car that hears its commands late does what its twists say, with those that were sent before the start") {
+  for (const double delay : {0.05, 0.1, 0.23}) {
+    CarCurves late = car();
+    late.delay = delay;
+    std::vector<double> t, throttle, steering;
+    std::vector<BodyTwist> commands;
+    std::vector<DriveCommand> past;
+    constexpr int kSent = 4;
+    for (int k = -kSent; k < static_cast<int>(kPeriods); ++k) {
+      const BodyTwist command{.v = 0.55 + 0.2 * std::sin(1.3 * k), .vy = 0.0, .omega = 0.6 * std::cos(0.4 * k)};
+      t.push_back(kPeriod * k);
+      commands.push_back(command);
+      if (k < 0) {
+        past.push_back({.v = command.v, .omega = command.omega});
+      } else {
+        throttle.push_back(command.v);
+        steering.push_back(command.omega);
+      }
+    }
+    const RolloutStart start{.pose = {}, .drive = {.v = 1.1, .omega = 0.4}};
+    const RolloutBatch<double> batch{.rollouts = 1,
+                                     .periods = kPeriods,
+                                     .commands = {throttle.data(), steering.data(), kPeriods, 1},
+                                     .starts = {&start, 1},
+                                     .past = past};
+    const CarBatch<double> found = car_batch(late, batch, kPeriod);
+    REQUIRE(found.past.size() == kSent);
+    const InputHistory twists =
+        car_twists(late, {t, commands},
+                   {.start = 0.0, .end = kPeriod * kPeriods, .measured = KnownMotion{.t = 0.0, .speed = 1.1}});
+    double along = 0.0, turned = 0.0, v = 0.0, omega = 0.0;
+    for (std::size_t k = 0; k < kPeriods; ++k) {
+      for (int part = 0; part < 100; ++part) {
+        const BodyTwist twist = twists.at(kPeriod * (static_cast<double>(k) + 0.01 * (part + 0.5)));
+        along += 0.01 * kPeriod * twist.v;
+        turned += 0.01 * kPeriod * twist.omega;
+      }
+      v += kPeriod * found.v[k];
+      omega += kPeriod * found.omega[k];
+      CHECK(std::abs(v - along) < 0.015);
+      CHECK(std::abs(omega - turned) < 0.04);
+    }
+  }
+}
+
+TEST_CASE("a car that hears late goes on as it does where nothing is known of what was sent") {
+  CarCurves late = car();
+  late.delay = 0.2;
+  const RolloutStart start{.pose = {}, .drive = {.v = 1.2, .omega = 0.5}};
+  const std::vector<double> throttle(kPeriods, 0.0), steering(kPeriods, 0.0);
+  const RolloutBatch<double> batch{.rollouts = 1,
+                                   .periods = kPeriods,
+                                   .commands = {throttle.data(), steering.data(), kPeriods, 1},
+                                   .starts = {&start, 1}};
+  const CarBatch<double> found = car_batch(late, batch, kPeriod);
+  CHECK(found.v[1] == 1.2);
+  CHECK(found.omega[1] == 0.5);
+  CHECK(found.v[2] < 1.1);
+}
+
 /// One car by the laws in doubles, step by step.
 BodyTwist mean_of_period(CarState& state, const BodyTwist& command, double period) {
   const int steps = 5;  // of 20 ms

@@ -61,8 +61,10 @@ def vehicle_numbers(model: Model) -> VehicleNumbers:
         if from_commands:
             speed, turn = (response.risen for response in step_responses(model))
             if model.car is not None:  # what is behind its curves is short
+                delay = model["car.delay"]
                 speed, turn = (
-                    (model[name].value, model[name].std) for name in ("car.lag", "car.steering_lag")
+                    (delay.value + model[name].value, model[name].std)  # together known as well as a lag
+                    for name in ("car.lag", "car.steering_lag")
                 )
             found |= {
                 name: risen[0] for name, risen in (("lag_speed", speed), ("lag_turn", turn)) if known(*risen)

@@ -23,6 +23,7 @@ _SINGLE = (
     ("car.steering_lag", "s"),
     ("car.cornering_drag", "s/rad"),
     ("car.understeer", "s^2/m^2"),
+    ("car.delay", "s"),
 )
 #: How sure the single numbers are in files of schema 4, which do not say it: part of the value, and at least.
 _OLDER = ((0.3, 0.05), (0.3, 0.05), (0.0, 0.1), (0.0, 0.05))
@@ -101,7 +102,7 @@ def car_of(rows: Sequence[Parameter], covariance: Floats) -> _core.CarCurves | N
     if [row.name for row in of_car[knots:]] != [name for name, _ in _SINGLE]:
         raise ValueError(f"a car has two curves, then {', '.join(name for name, _ in _SINGLE)}")
     if any(row.value < 0.0 for row in of_car[knots:]):
-        raise ValueError("lags, drag and understeer of a car are not negative")
+        raise ValueError("lags, delay, drag and understeer of a car are not negative")
     sections = []
     for curve in curves:
         at, value, std = map(list, zip(*curve, strict=True)) if curve else ([], [], [])
@@ -170,5 +171,5 @@ def older_car(section: CarSection) -> _core.CarCurves:
     )
     single = (section.lag, section.steering_lag, section.cornering_drag, section.understeer)
     stds = [part * value + least for value, (part, least) in zip(single, _OLDER, strict=True)]
-    std = np.array([*section.speed.std, *section.curvature.std, *stds])
+    std = np.array([*section.speed.std, *section.curvature.std, *stds, 0.0])  # none had a delay
     return _core.CarCurves(speed, curvature, *single).with_spread(np.diag(std**2), np.zeros(len(std)))

@@ -82,7 +82,10 @@ def _car_sentences(model: Model, found: Found) -> list[str]:
         for name, what in (("car.lag", "the throttle"), ("car.steering_lag", "the steering"))
         if found[name].identified
     ]
-    return [*sentences, f"Follows {' and '.join(lags)}."] if lags else sentences
+    delay = found.get("car.delay")  # files of earlier releases have none
+    known_delay = delay is not None and delay.identified and delay.value > 0.0
+    after = f"commands after {_seconds((delay.value, delay.std))}, " if delay and known_delay else ""
+    return [*sentences, f"Follows {after}{' and '.join(lags)}."] if lags else sentences
 
 
 def _follows(channels: Channels, said: Mapping[str, _Said]) -> list[str]:

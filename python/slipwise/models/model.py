@@ -26,7 +26,7 @@ from slipwise.models.inputs import MANY, InputName, input_name_of
 from slipwise.models.limits import LimitsSection, core_limits, limits_of
 from slipwise.models.parameter_table import VECTOR, ParameterTable, PhysicalParameter, physical_parameters
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile, VerdictSection
-from slipwise.models.upgrade import READ_VERSIONS, upgraded
+from slipwise.models.upgrade import READ_VERSIONS, upgraded, with_delay
 from slipwise.models.yaml_file import parse_yaml, read_yaml
 from slipwise.validation_text import first_problem
 
@@ -364,7 +364,7 @@ def _model_of(content: dict[str, Any], where: str) -> Model:
             advice="is it a slipwise model? calibrate again, or use the slipwise version that wrote it",
         )
     try:
-        read = content if version == SCHEMA_VERSION else upgraded(content)
+        read = with_delay(content if version == SCHEMA_VERSION else upgraded(content))
         return Model(ModelFile.model_validate(read))
     except ValidationError as problem:
         raise ModelError(

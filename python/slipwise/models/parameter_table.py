@@ -185,5 +185,6 @@ def _may_be_zero(name: str) -> bool:
             "sensor_",
             "car.lag",
             "car.steering_lag",
+            "car.delay",
         )
     )

@@ -66,6 +66,26 @@ def upgraded(content: Mapping[str, object]) -> dict[str, object]:
     return _in_one_table(result) | {"slipwise_model": SCHEMA_VERSION}
 
 
+def with_delay(content: dict[str, object]) -> dict[str, object]:
+    """Return the content with a delay of zero for a car that was learned without one."""
+    rows, covariance = content.get("parameters"), content.get("covariance")
+    if not isinstance(rows, list) or not isinstance(covariance, list):
+        return content
+    names = [row.get("name") if isinstance(row, dict) else None for row in rows]
+    if "car.understeer" not in names or "car.delay" in names:
+        return content
+    at = names.index("car.understeer") + 1
+    row = Parameter(
+        name="car.delay", stage="car", unit="s", value=0.0, std=0.0, prior_std=0.0, identifiable=True
+    )
+    wider = [[*each[:at], 0.0, *each[at:]] if isinstance(each, list) else each for each in covariance]
+    beside = [0.0] * (len(covariance) + 1)
+    return content | {
+        "parameters": [*rows[:at], row.model_dump(), *rows[at:]],
+        "covariance": [*wider[:at], beside, *wider[at:]],
+    }
+
+
 def _in_one_table(content: dict[str, object]) -> dict[str, object]:
     """The same with limits and the curves of a car as rows of its parameters.
 

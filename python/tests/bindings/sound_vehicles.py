@@ -24,7 +24,9 @@ def _layout() -> _core.WheelLayout:
 def _car() -> _core.CarCurves:
     curve = _core.KnotCurve([-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], [0.1, 0.0, 0.1])
     car = _core.CarCurves(curve, curve, 0.3, 0.1, 0.1, 0.1)
-    return car.with_spread(0.01 * np.eye(10), np.array([1.0, 0.0, 1.0, 1.0, 0.1, 1.0, 0.5, 0.2, 0.3, 0.2]))
+    return car.with_spread(
+        0.01 * np.eye(11), np.array([1.0, 0.0, 1.0, 1.0, 0.1, 1.0, 0.5, 0.2, 0.3, 0.2, 0.1])
+    )
 
 
 def _input_spread() -> _core.InputSpread:
@@ -46,8 +48,8 @@ VEHICLE_ARGUMENTS: dict[str, Callable[[], Any]] = {
     "Wheel.__init__ behind_hinge": lambda: False,
     "WheelLayout.__init__ wheels": lambda: [_wheel(0.0, 0.3), _wheel(0.0, -0.3)],
     "car_twists out": lambda: np.zeros((2, 4, 2)),
-    "CarCurves.with_spread covariance": lambda: 0.01 * np.eye(10),
-    "CarCurves.with_spread prior_std": lambda: np.ones(10),
+    "CarCurves.with_spread covariance": lambda: 0.01 * np.eye(11),
+    "CarCurves.with_spread prior_std": lambda: np.ones(11),
     "Wheel.__init__ pivot": lambda: None,
     "WheelLayout.twists hinge": lambda: np.full((3, 2), 0.1),
 }

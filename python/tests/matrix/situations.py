@@ -77,7 +77,7 @@ def of_car(name: str, *sensors: Sensor, robot: Robot = THROTTLE, **changes: obje
         "files": {"car.yaml": CAR},
         "ranges": CAR_RANGES,
         "never": ("at once",),
-        "bound": (0.35, 0.15),
+        "bound": (0.15, 0.08),
         "seconds": 120.0,
         "changed": SLOWER,
     }
@@ -155,7 +155,7 @@ SITUATIONS: tuple[Situation, ...] = (
         says=("steering commands",),
         never=("at once", "yaw[- ]rate"),
     ),
-    of_car("throttle", POSES, also=("several-logs",)),
+    of_car("throttle", POSES, also=("several-logs",), says=(r"after 0\.10",)),
     of_car("throttle-tighter", POSES, changed=CURVED, uses=("compare", "fleet")),
     of_car("throttle-odometry", logs.odometry("odo_v"), POSES, uses=("inspect", "calibrate")),
     of_car("throttle-positions", PoseSensor(yaw=False), uses=("calibrate", "replay")),

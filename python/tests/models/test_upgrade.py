@@ -35,6 +35,21 @@ def test_a_car_of_the_schema_before_is_the_same_car(tmp_path: Path) -> None:
     assert "car.lag" not in [row.name for row in again.table.rows if row.identifiable]
 
 
+def test_a_car_that_was_learned_without_a_delay_has_none(tmp_path: Path) -> None:
+    content = yaml.safe_load(
+        make_model(Made(_core.named_basis("edd-2"), commands=True, car=true_car())).to_yaml()
+    )
+    at = [row["name"] for row in content["parameters"]].index("car.delay")
+    numbers = np.delete(np.delete(np.array(content["covariance"]), at, axis=0), at, axis=1)
+    del content["parameters"][at]
+    path = tmp_path / "old.yaml"
+    path.write_text(yaml.safe_dump(content | {"covariance": numbers.tolist()}), encoding="utf-8")
+    model = load_model(path)
+    assert model.car is not None
+    assert model.car.delay == 0.0
+    assert np.array_equal(np.delete(np.delete(model.table.covariance, at, axis=0), at, axis=1), numbers)
+
+
 def test_a_wrong_section_of_the_schema_before_is_refused_by_its_name(tmp_path: Path) -> None:
     content = as_sections(make_model(MODELS["commands with limits"])) | {"slipwise_model": 4}
     for wrong, message in (({"limits": {"speed": {}}}, "missing"), ({"car": "red"}, "table of keys")):

@@ -29,7 +29,7 @@ struct CarSpread {
 };
 
 /// lag V' = speed(throttle) - V (1 + cornering_drag |omega|);
-/// omega = V curvature(steering) / (1 + understeer V^2), steering through a lag of its own.
+/// omega = V curvature(steering) / (1 + understeer V^2), steering through a lag of its own. It hears both `delay` late.
 struct CarCurves {
   KnotCurve speed;              ///< that a throttle in [-1, 1] leads to, straight ahead [m/s]
   KnotCurve curvature;          ///< of a slow path at a steering in [-1, 1] [1/m]
@@ -37,11 +37,12 @@ struct CarCurves {
   double steering_lag = 0.0;    ///< [s]
   double cornering_drag = 0.0;  ///< [s/rad]
   double understeer = 0.0;      ///< [s^2/m^2]
+  double delay = 0.0;           ///< of throttle and steering [s]
   /// Without it the numbers are taken as exact.
   std::shared_ptr<const CarSpread> spread = {};
 };
 
-/// All numbers of a car: speed and curvature at the knots, lag, steering lag, drag of cornering, understeer.
+/// All numbers of a car: speed and curvature at the knots, lag, steering lag, drag of cornering, understeer, delay.
 Eigen::VectorXd car_numbers(const CarCurves& car);
 
 /// What inputs may be instead of what they are expected to be, along each direction of their uncertainty.
@@ -67,7 +68,8 @@ struct CarState {
   friend bool operator==(const CarState&, const CarState&) = default;
 };
 
-/// The car after `duration` [s] under a held command (v is the throttle, omega the steering, both in [-1, 1]).
+/// The car after `duration` [s] under a held command that it hears (v is the throttle, omega the steering, both in
+/// [-1, 1]).
 CarState advanced(const CarCurves& car, const CarState& state, const BodyTwist& command, double duration);
 /// How it moves.
 BodyTwist car_twist(const CarCurves& car, const CarState& state);

@@ -69,10 +69,11 @@ class CarCurveFilter {
 
   /// Another run begins: the car stands. What was learned stays, and competes with curves that begin again.
   void start_run(double t);
-  /// Goes on to `until` [s] under the commands (v is the throttle, omega the steering). `twist` is the mean over this
-  /// time as poses tell it; nullptr where they do not.
+  /// Goes on to `until` [s] under the commands (v is the throttle, omega the steering), known from `reach()` before
+  /// `until()` on. `twist` is the mean over this time as poses tell it; nullptr where they do not.
   void follow(const InputHistory& commands, double until, const BodyTwist* twist);
 
+  static double reach();  ///< of the longest delay [s]
   double until() const { return until_; }
   const CarCurves& curves() const { return curves_; }
   /// Those that go on from all runs: curves that began again know little of throttles that they have not seen.
@@ -98,16 +99,18 @@ class CarCurveFilter {
 
  private:
   struct Means;
-  void step(const BodyTwist& command, double duration, const BodyTwist& moved, Means& means);
+  /// Goes on under a held command that is heard with the delay of this place.
+  void follow_candidates(std::size_t delay, const BodyTwist& command, double duration, Means& means);
+  void follow_car(const BodyTwist& command, double duration, Means& means);
   void learn(const Means& means, const BodyTwist& twist);
   void set_curves();
   std::size_t best_observer() const;
 
   CarCurves curves_, lasting_;
   CurveCopies speed_, turn_;
-  Eigen::MatrixXd ramps_;            ///< [ramps, lags] lagging ramps of the throttle
+  Eigen::MatrixXd ramps_;            ///< [ramps, lags of each delay] lagging ramps of the throttle
   Eigen::VectorXd drags_;            ///< [lags] lagging |omega V|
-  Eigen::VectorXd steering_;         ///< [steering lags]
+  Eigen::VectorXd steering_;         ///< [steering lags of each delay]
   std::vector<CarState> observers_;  ///< each set right by another part of what was measured
   std::vector<double> observer_score_;
   double until_ = 0.0;

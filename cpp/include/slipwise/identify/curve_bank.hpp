@@ -24,7 +24,7 @@ class CurveBank {
 
   /// Scores each candidate by what it knew before, then learns; row k of `features` is that of candidate k.
   void learn(const Eigen::MatrixXd& features, double output);
-  /// Solves for the weights that are used from now on.
+  /// Solves for the weights that are used from now on; seldom for those of candidates that predict far worse.
   void solve();
   std::size_t best() const;
   /// Examples that it learned.
@@ -33,9 +33,11 @@ class CurveBank {
   double variance() const { return variance(best()); }
   /// What the best candidate misses of an output.
   double error(const Eigen::MatrixXd& features, double output) const;
-  const Eigen::VectorXd& weights() const { return weights_[best()]; }
-  /// Of the weights, as if none were bounded: rather too large.
-  Eigen::MatrixXd covariance() const;
+  const Eigen::VectorXd& weights() const { return weights(best()); }
+  /// Of a candidate.
+  const Eigen::VectorXd& weights(std::size_t k) const { return weights_[k]; }
+  /// Of its weights, as if none were bounded: rather too large.
+  Eigen::MatrixXd covariance(std::size_t k) const;
   /// The same before anything was learned.
   Eigen::MatrixXd prior_covariance() const { return precision_.cwiseInverse().asDiagonal(); }
   /// Of each candidate, by the errors of what was predicted.
@@ -48,7 +50,7 @@ class CurveBank {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.information_, self.evidence_, self.weights_, self.squares_, self.precision_, self.prior_, self.free_);
-    a(self.examples_, self.noise_);
+    a(self.examples_, self.noise_, self.solved_);
   }
 
  private:
@@ -61,6 +63,7 @@ class CurveBank {
   Eigen::VectorXd precision_, prior_;
   Eigen::Index free_ = 0;
   double examples_ = 0.0, noise_ = 1.0;
+  std::size_t solved_ = 0;  ///< times
 };
 
 /// A curve that may be another one from a run on, with another battery, floor or car: copies that go on from earlier

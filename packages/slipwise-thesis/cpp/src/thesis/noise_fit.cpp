@@ -189,7 +189,7 @@ NoiseFit fit_noise(std::span<const NoiseGroup> groups, const NoiseFitSettings& s
   while (fit.iterations < settings.iterations && fit.status == Status::NotConverged) {
     ++fit.iterations;
     const auto equations = normal_equations(scatters, weights_at(noise), settings.objective);
-    const Vector6 next = nonnegative_solution(equations.matrix, equations.vector);
+    const Vector6 next = nonnegative_solution(equations.matrix, equations.vector, noise);
     const Vector6 std = covariance_of(equations).diagonal().cwiseSqrt();
     const bool settled = ((next - noise).array().abs() <= settings.tolerance * std.array()).all();
     fit.status = settled || settings.objective == NoiseObjective::Thesis ? Status::Converged : fit.status;
