@@ -265,7 +265,7 @@ void bind_online(nb::module_& m) {
            }),
            "t"_a, "column"_a, "value"_a, "A number of a sensor of `READINGS`.")
       .def_prop_ro("gyro_bias", locked([](const MotionLearner& learner) {
-                     const GyroBuffer& gyro = learner.stream().gyro();
+                     const GyroBuffer& gyro = learner.stream().drive().readings.gyro();
                      return std::array{gyro.bias(), gyro.bias_std()};
                    }),
                    "Of the gyro [rad/s], and its standard deviation.")

@@ -135,7 +135,7 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   work_until(stream_.newest() - kReady);
   Knowledge knowledge = known_.at(stream_.newest() - std::max(embargo, kReady));
   const Structure structure = knowledge.motion->structure;  // whose errors are known
-  DrivenSegment ahead = stream_.segment_ahead(horizon, inputs);
+  DrivenSegment ahead = stream_.drive().ahead(stream_.over(stream_.newest(), stream_.newest() + horizon), inputs);
   ahead.segment.measured = measured_pose({});
   CommandLimits limits;
   if (known.limits != nullptr && known.limits->posterior != nullptr) {
@@ -148,7 +148,7 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   const auto beginnings =
       known.forces.empty()
           ? linearize_beginnings(motion.model, motion.estimate.mean, ahead.inputs, ahead.segment, kPathPoses)
-          : pushed_beginnings(motion, ahead, stream_.forces_ahead(counted(known.forces)));
+          : pushed_beginnings(motion, ahead, stream_.drive().forces_ahead(stream_.newest(), counted(known.forces)));
   PredictedPath path{.start = stream_.newest(),
                      .t = {},
                      .poses = {},
@@ -160,7 +160,8 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   path.t.back() = ahead.segment.end;
   const auto along = knowledge.disturbance->predict_along(motion, slip, beginnings, ahead.segment);
   const auto of_inputs =
-      input_covariances(motion.model, motion.estimate.mean, ahead, stream_.spread_ahead(horizon, inputs), path.t);
+      input_covariances(motion.model, motion.estimate.mean, ahead,
+                        stream_.drive().spread_ahead(path.start, path.start + horizon, inputs), path.t);
   for (std::size_t i = 0; i < along.size(); ++i) {
     path.students.push_back(errors_.student(stream_.newest(), path.t[i] - path.start, structure));
     path.poses.emplace_back(along[i].pose);
@@ -184,7 +185,7 @@ LearnedModel MotionLearner::model() const {
                        .seconds = complete.seconds_,
                        .segments = complete.hypotheses_.count(),
                        .rejected = complete.log_.rejected(),
-                       .car = complete.stream_.car_curves(),
+                       .car = complete.stream_.drive().car_curves(),
                        .evidence = complete.stream_.evidence()};
   learned.known.until = clock_.stamp(learned.known.until);
   const double spacing = complete.stream_.wheel_interval();
@@ -219,10 +220,10 @@ MotionNow MotionLearner::motion_now() {
             .inflation = spread(errors_.student(t, horizon, known.motion->structure))};
   };
   const auto leg = [this](const LegKnowledge& known, double start, double end) {
-    return motion_leg(known, stream_.stretch(start, end, leg_memory(*known.posterior)));
+    return motion_leg(known, stream_.drive().stretch(stream_.over(start, end), leg_memory(*known.posterior)));
   };
   const auto clock = known_.at(stream_.newest() - kReady).clock;
-  return {.inputs = stream_.inputs(),
+  return {.inputs = stream_.drive().inputs(),
           .newest = stream_.newest(),
           .latency = settings_.stream.latency,
           .learned = seconds_,

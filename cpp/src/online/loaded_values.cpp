@@ -281,29 +281,42 @@ void MotionEvidence::check_loaded() const {
           "turns are compared before there are any");
 }
 
-void SegmentStream::check_loaded(const SegmentStream& made) const {
-  require(archive::same(settings_, made.settings_) && archive::same(keep_, made.keep_) &&
-              targets_.size() == made.targets_.size() && others_.size() == made.others_.size() &&
-              car_.has_value() == made.car_.has_value(),
+void MeasuredDrive::check_loaded(const MeasuredDrive& made) const {
+  require(archive::same(settings, made.settings) && car.has_value() == made.car.has_value(),
           "a stream is of other settings");
-  commands_.check_loaded(made.commands_);
-  wheels_.check_loaded(made.wheels_);
-  gate_.check_loaded();
+  commands.check_loaded(made.commands);
+  wheels.check_loaded(made.wheels);
+  if (car) {
+    car->check_loaded(present(made.car));
+  }
+}
+
+void SegmentCutters::check_loaded(const SegmentCutters& made) const {
+  require(targets_.size() == made.targets_.size(), "a stream is of other settings");
   learned_.check_loaded(made.learned_);
   slip_.check_loaded(made.slip_);
-  wheel_cutter_.check_loaded(made.wheel_cutter_);
+  wheels_.check_loaded(made.wheels_);
   twists_.check_loaded(made.twists_);
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     targets_[i].check_loaded(made.targets_[i]);
   }
-  for (std::size_t i = 0; i < others_.size(); ++i) {
-    require(archive::same(others_[i].settings, made.others_[i].settings), "a source is of other settings");
-    others_[i].cutter.check_loaded(made.others_[i].cutter);
-    others_[i].gate.check_loaded();
+}
+
+void PoseSources::check_loaded(const PoseSources& made) const {
+  require(sources_.size() == made.sources_.size(), "a stream is of other sources");
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    require(archive::same(sources_[i].settings, made.sources_[i].settings), "a source is of other settings");
+    sources_[i].cutter.check_loaded(made.sources_[i].cutter);
+    sources_[i].gate.check_loaded();
   }
-  if (car_) {
-    car_->check_loaded(present(made.car_));
-  }
+}
+
+void SegmentStream::check_loaded(const SegmentStream& made) const {
+  drive_.check_loaded(made.drive_);
+  others_.check_loaded(made.others_);
+  require(archive::same(keep_, made.keep_), "a stream is of other settings");
+  gate_.check_loaded();
+  cutters_.check_loaded(made.cutters_);
   evidence_.check_loaded();
   require(goes_forward(poses_, &MeasuredPose::t) && std::ranges::is_sorted(wheel_stamps_) && !std::isnan(newest_) &&
               std::ranges::none_of(wheel_stamps_, [](double t) { return !std::isfinite(t); }),

@@ -130,7 +130,7 @@ std::vector<std::vector<InputSample>> expected_commands(const StreamSettings& se
       stream.push(measurement);
       if (const auto* command = std::get_if<CommandSample>(&measurement)) {  // what the stream's gates see of it
         const double t = command->sample.t;
-        found.push_back({t, stream.commands().held_at(t).value_or(BodyTwist{})});
+        found.push_back({t, stream.drive().commands.held_at(t).value_or(BodyTwist{})});
       }
     });
     stream.end_run();

@@ -18,11 +18,10 @@
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kSlipLength, 1.0);                // [s] of segments behind wheel speeds
-SLIPWISE_TUNING(kOfPositions, 5.0);               // [s] of those between positions, which tell together how they turn
-SLIPWISE_TUNING(kWheelLength, 1.0);               // [s] wheel speeds tell a step's response from its start on
 constexpr double kLongestGap = 120.0;             // [s] between poses, after which the segment before it may still end
 constexpr long kFramesApart = 1'000'000'000'000;  // numbers of frames before a break and after it are never the same
+constexpr double kHeadings = 0.1;                 // [s] between headings of a gyro
+constexpr double kMissing = 0.25;                 // [s] between its samples, over which the robot may turn otherwise
 constexpr double kSpare = 10.0;                   // [s] that inputs are kept for longer than a segment may need
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -31,39 +30,24 @@ std::size_t index(Stream stream) { return static_cast<std::size_t>(stream); }
 /// A standard deviation that can be one.
 double allowed(double std) { return std >= 0.0 ? std : std::numeric_limits<double>::quiet_NaN(); }
 
-SegmentRules between_positions(SegmentRules rules, double length) {
-  rules.of_positions = length;
-  return rules;
-}
-
 }  // namespace
 
 SegmentStream::SegmentStream(const StreamSettings& settings)
-    : settings_(settings),
+    : drive_(settings),
       keep_(kLookBack + kSpare + settings.latency),
       newest_(-kNever),
-      commands_(settings.unknown_after),
-      wheels_(settings.unknown_after),
       range_{kNever, -kNever, kNever, -kNever},
       rates_(settings.sensor),
       held_(settings.unknown_after),
       now_(-kNever),
-      learned_(settings.segment_length, between_positions(settings.rules, settings.segment_length),
-               settings.whole_frames, settings.stride),
-      slip_(kSlipLength, between_positions(settings.rules, kOfPositions), true),
-      wheel_cutter_(kWheelLength, settings.rules, true),
-      twists_(settings.rules, settings.sensor),
-      courses_(settings.sensor) {
+      cutters_(settings),
+      courses_(settings.sensor),
+      others_(settings) {
   double longest = settings.segment_length;
   for (const double horizon : settings.horizons) {
-    targets_.emplace_back(horizon, settings.rules, false);
     longest = std::max(longest, horizon);
   }
   keep_ += 2.0 * longest;
-  begin_others();
-  if (settings.car) {
-    car_.emplace(*settings.car, settings.sensor, settings.unknown_after);
-  }
 }
 
 SegmentStream::SegmentStream(const SegmentStream&) = default;
@@ -72,51 +56,42 @@ SegmentStream& SegmentStream::operator=(const SegmentStream&) = default;
 SegmentStream& SegmentStream::operator=(SegmentStream&&) noexcept = default;
 SegmentStream::~SegmentStream() = default;
 
-std::optional<CarCurves> SegmentStream::car_curves() const {
-  return car_ ? std::optional(car_->curves()) : std::nullopt;
-}
-
 void SegmentStream::start_run() {
   end_run();
   evidence_.start_run();
   newest_ = now_ = -kNever;
   stamps_.fill({});
   speeds_ = {};
-  commands_.clear();
-  wheels_.clear();
-  tilts_.clear();
-  forces_.clear();
-  readings_.restart();
+  drive_.start_run();
   turned_until_.reset();
   gate_.restart();
   timer_.restart();
   wheel_timer_.restart();
-  std::ranges::for_each(others_, &PoseSource::restart);
-  if (car_) {
-    car_->start_run();
-  }
+  others_.start_run();
 }
 
 void SegmentStream::end_run() {
   advance(kNever);
-  process_accepted(gate_.finish(gate_inputs(now_)));
-  finish_others();
-  finish_cutters();
+  process_accepted(gate_.finish(drive_.gate_inputs(now_)));
+  others_.finish_gates(drive_, output_);
+  cutters_.finish(drive_, wheels_ever_, now_, output_);
+  others_.finish_segments(now_, drive_, output_);
+  cutters_.finish_targets(drive_, now_, output_);
   rates_.restart();
   held_.restart();
-  evidence_.end_run(wheels_);
+  evidence_.end_run(drive_.wheels);
 }
 
 /// Whether a measurement may be used; says why not.
 bool SegmentStream::arrives(Stream stream, double t, std::span<const double> numbers, std::size_t kind) {
   evidence_.see_stamp(t);
-  const bool too_late = std::isfinite(t) && later(newest_ - settings_.latency, t);
+  const bool too_late = std::isfinite(t) && later(newest_ - settings().latency, t);
   if (const auto wrong = stamps_[index(stream) + kind].check(t, numbers)) {
-    reject(stream, *wrong, t);
+    output_.reject(stream, *wrong, t);
     return false;
   }
   if (too_late) {
-    reject(stream, Reason::TooLate, t);
+    output_.reject(stream, Reason::TooLate, t);
     return false;
   }
   newest_ = std::max(newest_, t);
@@ -133,27 +108,33 @@ bool SegmentStream::take_input(Stream stream, const InputSample& sample) {
   const std::array plausible{gates[0].plausible(v, measured), gates[1].plausible(vy, measured),
                              gates[2].plausible(omega, measured)};
   if (!std::ranges::all_of(plausible, std::identity{})) {
-    reject(stream, Reason::AbsurdSpeed, sample.t);
+    output_.reject(stream, Reason::AbsurdSpeed, sample.t);
     return false;
   }
-  InputBuffer& history = stream == Stream::Command ? commands_ : wheels_;
+  InputBuffer& history = stream == Stream::Command ? drive_.commands : drive_.wheels;
   history.push(sample);
-  if (&history == &inputs()) {
+  if (&history == &drive_.inputs()) {
     range_ = {std::min(range_[0], v), std::max(range_[1], v), std::min(range_[2], omega), std::max(range_[3], omega)};
     held_.push(sample);
   }
   return true;
 }
 
+bool SegmentStream::push(const Measurement& measurement) {
+  const bool taken = std::visit([this](const auto& sample) { return take(sample); }, measurement);
+  advance(newest_ - settings().latency);
+  return taken;
+}
+
 bool SegmentStream::take(const CommandSample& command) {
   const InputSample& sample = command.sample;
-  if (!car_) {
+  if (!drive_.car) {
     return take_input(Stream::Command, sample);
   }
-  CarStream& car = *car_;
-  const bool taken = take_input(Stream::Command, {sample.t, car.expected(sample, settings_.latency)});
+  CarStream& car = *drive_.car;
+  const bool taken = take_input(Stream::Command, {sample.t, car.expected(sample, settings().latency)});
   if (taken) {
-    car.push_command(sample, settings_.latency);
+    car.push_command(sample, settings().latency);
   }
   return taken;
 }
@@ -166,13 +147,72 @@ bool SegmentStream::take(const WheelSample& wheels) {
   return taken;
 }
 
+bool SegmentStream::take(const Tilt& measured) {
+  if (!arrives(Stream::Attitude, measured.t, std::array{measured.roll, measured.pitch})) {
+    return false;
+  }
+  const std::optional<Tilt> tilt = attitudes_.level(measured);
+  if (!tilt) {
+    output_.reject(Stream::Attitude, Reason::SteepAttitude, measured.t);
+    return false;
+  }
+  drive_.tilts.push(*tilt);
+  steepest_ = std::max({steepest_, std::abs(tilt->roll), std::abs(tilt->pitch)});
+  return true;
+}
+
+bool SegmentStream::take(const KnownForce& force) {
+  if (!arrives(Stream::Force, force.t, std::array{force.x, force.y})) {
+    return false;
+  }
+  if (!drive_.tilts.empty()) {
+    output_.reject(Stream::Force, Reason::ForceBesideAttitude, force.t);
+    return false;
+  }
+  drive_.forces.push(force);
+  return true;
+}
+
+bool SegmentStream::take(const Reading& reading) {
+  if (!arrives(Stream::Reading, reading.t, std::array{reading.value}, reading.kind)) {
+    return false;
+  }
+  drive_.readings.push(reading);
+  if (Readings::of_gyro(reading)) {
+    const TimedNumber rate{reading.t, reading.value};
+    evidence_.push_gyro(rate);
+    if (settings().heading_only) {
+      turn_on(rate);
+    }
+  }
+  return true;
+}
+
+/// Headings are integrals of a gyro, one every `kHeadings`, and a frame ends where samples are missing.
+void SegmentStream::turn_on(const TimedNumber& sample) {
+  if (turned_until_) {
+    const double seconds = sample.t - turned_until_->t;
+    breaks_ += later(seconds, kMissing) ? 1 : 0;
+    turned_ += 0.5 * seconds * (sample.value + turned_until_->value);
+  }
+  turned_until_ = sample;
+  if (!later((poses_.empty() ? now_ : poses_.back().t) + kHeadings, sample.t)) {
+    poses_.push_back({.t = sample.t, .x = 0.0, .y = 0.0, .yaw = turned_, .frame = breaks_});
+  }
+}
+
 bool SegmentStream::take(const MeasuredPose& pose) {
   evidence_.see_stamp(pose.t);
   if (pose.fix == PoseFix::None) {
-    reject(Stream::Pose, Reason::NoFix, pose.t);
+    output_.reject(Stream::Pose, Reason::NoFix, pose.t);
     return false;
   }
-  return pose.source == 0 ? take_first(pose) : take_other(pose);
+  if (pose.source == 0) {
+    return take_first(pose);
+  }
+  const std::optional<double> stamp = others_.push(pose, newest_ - settings().latency, output_);
+  newest_ = std::max(newest_, stamp.value_or(newest_));
+  return stamp.has_value();
 }
 
 bool SegmentStream::take_first(const MeasuredPose& pose) {
@@ -199,13 +239,13 @@ void SegmentStream::advance(double until) {
   while (!poses_.empty() && poses_.front().t <= until) {
     const MeasuredPose pose = poses_.front();
     poses_.pop_front();
-    advance_others(pose.t);
+    others_.advance(pose.t, drive_, output_);
     process_wheels(pose.t);
     process_pose(pose);
   }
-  advance_others(until);
+  others_.advance(until, drive_, output_);
   process_wheels(until);
-  evidence_.compare_gyro(until, commands_, wheels_);
+  evidence_.compare_gyro(until, drive_.commands, drive_.wheels);
   trim();
 }
 
@@ -215,184 +255,95 @@ void SegmentStream::process_wheels(double until) {
     const double t = wheel_stamps_.front();
     wheel_stamps_.pop_front();
     wheels_ever_ = true;
-    const auto timed = wheel_timer_.push({.t = t, .x = 0.0, .y = 0.0, .yaw = 0.0}, settings_.rules.late_factor);
-    if (timed && settings_.from_commands) {
-      emit_wheel_segments(wheel_cutter_.push(*timed, commands_));
+    const auto timed = wheel_timer_.push({.t = t, .x = 0.0, .y = 0.0, .yaw = 0.0}, settings().rules.late_factor);
+    if (timed && settings().from_commands) {
+      cutters_.push_wheels(*timed, drive_, output_);
     }
   }
 }
 
 void SegmentStream::process_pose(const MeasuredPose& raw) {
   now_ = raw.t;
-  const MeasuredPose pose = complete(raw, accuracy_);
-  if (settings_.heading_only) {
+  const MeasuredPose pose = drive_.complete(raw, accuracy_);
+  if (settings().heading_only) {
     process_accepted({.accepted = {pose}, .outliers = {}, .jumps = {}});
   } else {
-    evidence_.see_measured(raw, commands_, wheels_);
-    process_accepted(gate_.push(pose, gate_inputs(now_)));
+    evidence_.see_measured(raw, drive_.commands, drive_.wheels);
+    process_accepted(gate_.push(pose, drive_.gate_inputs(now_)));
   }
 }
 
-/// With its context: how the robot was tilted, and how exact its like were.
-MeasuredPose SegmentStream::complete(const MeasuredPose& raw, PoseAccuracies& accuracies) const {
-  MeasuredPose pose = raw;
-  if (const auto tilt = tilts_.known_at(raw.t, settings_.unknown_after)) {
-    pose.gx = gravity_of(*tilt).gx;
-    pose.gy = gravity_of(*tilt).gy;
+/// Gives a position the heading that the inputs and the positions of late make, where they make one.
+bool SegmentStream::head(TimedPose& timed, CourseFinder& courses) const {
+  if (timed.pose.position) {
+    const auto yaw = courses.push(timed.pose, drive_.gate_inputs(timed.pose.t));
+    timed.pose.yaw = yaw.value_or(timed.pose.yaw);
+    return yaw.has_value();
   }
-  pose.std_ratio = accuracies[static_cast<std::size_t>(raw.fix)].ratio(raw.std);
-  return pose;
-}
-
-/// Wheel speeds tell where the robot can have come, where there are some by then.
-const InputBuffer& SegmentStream::gate_inputs(double t) const {
-  return !wheels_.empty() && !later(wheels_.first(), t) ? wheels_ : commands_;
+  return true;
 }
 
 void SegmentStream::process_accepted(const GatedPoses& gated) {
-  reject_gated(gated);
-  if (!settings_.heading_only) {
-    evidence_.see_gated(gated, commands_, wheels_);
+  output_.reject(gated);
+  if (!settings().heading_only) {
+    evidence_.see_gated(gated, drive_.commands, drive_.wheels);
   }
   for (const MeasuredPose& pose : gated.accepted) {
-    auto timed = timer_.push(pose, settings_.rules.late_factor);
+    auto timed = timer_.push(pose, settings().rules.late_factor);
     if (!timed) {
-      reject(Stream::Pose, Reason::LatePose, pose.t);
+      output_.reject(Stream::Pose, Reason::LatePose, pose.t);
       continue;
     }
-    readings_.gyro().see_inputs(pose.t, gate_inputs(pose.t), settings_.rules.still_speed);
+    drive_.readings.gyro().see_inputs(pose.t, drive_.gate_inputs(pose.t), settings().rules.still_speed);
     if (head(*timed, courses_)) {
       heading_ = timed->pose.yaw;
       rates_.push(timed->pose);
       if (pose.position) {
-        readings_.gyro().see_course(timed->pose);
+        drive_.readings.gyro().see_course(timed->pose);
       }
-      if (car_) {
-        car_->push_pose(timed->pose);
+      if (drive_.car) {
+        drive_.car->push_pose(timed->pose);
       }
     }
-    if (settings_.from_commands && wheels_ever_) {
-      emit_slip(fitted(slip_.push(*timed, wheels_), settings_.sensor));
-    } else if (settings_.from_commands && !pose.position &&
-               !settings_.heading_only) {  // a course lags behind the heading by half its way
-      emit_twists(twists_.push(*timed, commands_));
-    }
-    emit_learned(fitted(learned_.push(*timed, inputs()), settings_.sensor));
-    for (std::size_t i = 0; i < targets_.size(); ++i) {
-      emit_targets(i, fitted(targets_[i].push(*timed, inputs()), settings_.sensor));
-    }
-  }
-}
-
-void SegmentStream::finish_cutters() {
-  if (settings_.from_commands) {
-    emit_wheel_segments(wheel_cutter_.finish(commands_));
-    emit_twists(twists_.finish(commands_));
-    if (wheels_ever_) {
-      emit_slip(fitted(slip_.finish(wheels_), settings_.sensor));
-    }
-  }
-  emit_learned(fitted(learned_.finish(inputs()), settings_.sensor));
-  for (PoseSource& source : others_) {
-    for (const SegmentCut& cut : fitted(source.cutter.finish(inputs()), source.settings.sensor)) {
-      emit_other(source, cut, std::max(now_, cut.second.t));
-    }
-  }
-  for (std::size_t i = 0; i < targets_.size(); ++i) {
-    emit_targets(i, fitted(targets_[i].finish(inputs()), settings_.sensor));
-  }
-}
-
-InputHistory SegmentStream::commanded(const Segment& over, double back, double known,
-                                      const std::vector<InputSample>& future) const {
-  return car_ ? car_->inputs(path_start(over), over.end, known, future)
-              : commands_.slice(path_start(over) - back, over.end, SliceKind::Commands, future);
-}
-
-/// Wheel speeds that drive a model are held until the next one, as it will be driven; behind commands they say what the
-/// drive did.
-InputHistory SegmentStream::wheels(double start, double end) const {
-  return wheels_.slice(start, end, settings_.from_commands ? SliceKind::Measured : SliceKind::Wheels);
-}
-
-/// A segment to be learned, or over a `horizon` to be predicted from what was known one horizon before.
-DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, double known_at,
-                                    std::optional<double> horizon) const {
-  Segment segment{.start = cut.first.t,
-                  .end = cut.second.t,
-                  .measured = {{.sensor = {.place = settings_.sensor,
-                                           .kind = PoseSensor{{cut.first.std_ratio, cut.second.std_ratio}}},
-                                .z = cut.measured().vector()}},
-                  .gx = cut.first.gx,
-                  .gy = cut.first.gy,
-                  .heading = cut.first.yaw};
-  if (cut.fitted) {
-    segment.measured.front().sensor.kind = cut.fitted->sensor;
-    segment.measured.front().z = cut.fitted->z;
-    segment.heading = cut.fitted->heading;
-  }
-  if (settings_.heading_only) {
-    set_turn(segment);
-  }
-  readings_.measure(segment);
-  stand_on_ground(segment, horizon.has_value());
-  if (!by_wheels) {
-    set_actuator_state(segment);
-  }
-  const double known = segment.start - (horizon ? settings_.age_of_known(*horizon) : 0.0);
-  InputHistory driving =
-      by_wheels ? wheels(path_start(segment) - kWheelsBack, segment.end) : commanded(segment, kLookBack, known);
-  return {.inputs = std::move(driving), .segment = std::move(segment), .known_at = known_at};
-}
-
-/// What wheel speeds say of the actuator until the segment starts.
-void SegmentStream::set_actuator_state(Segment& segment) const {
-  segment.initial = wheels_.known_at(segment.start);
-  if (segment.initial) {
-    InputHistory until_start = wheels(path_start(segment) - kWheelsBack, segment.start);
-    segment.known =
-        MeasuredActuator{.twist = std::make_shared<const InputHistory>(std::move(until_start)), .until = segment.start};
-  }
-}
-
-/// What tilts or pushes the robot: where it is `foreseen`, as far as is known at the start.
-void SegmentStream::stand_on_ground(Segment& segment, bool foreseen) const {
-  const double oldest = settings_.unknown_after;
-  segment.ground =
-      foreseen ? tilts_.from(segment.start, oldest) : tilts_.along(path_start(segment), segment.end, oldest);
-  const auto force = foreseen ? forces_.at(segment.start) : forces_.mean(path_start(segment), segment.end);
-  if (force) {
-    segment.gx = force->x;
-    segment.gy = force->y;
+    cutters_.push(*timed, drive_, wheels_ever_, now_, output_);
   }
 }
 
 /// Inputs are kept for segments that have begun, unless poses do not come for long.
 void SegmentStream::trim() {
-  double begun = std::max(now_, newest_ - settings_.latency);
-  begun = std::min(begun, twists_.begins());
-  for (const SegmentCutter* cutter : {&learned_, &slip_, &wheel_cutter_}) {
-    begun = std::min(begun, cutter->begins());
-  }
-  for (const PoseSource& source : others_) {
-    begun = std::min({begun, source.cutter.begins(), source.waiting.empty() ? begun : source.waiting.front().t});
-  }
-  for (const SegmentCutter& cutter : targets_) {
-    begun = std::min(begun, cutter.begins());
-  }
-  const double oldest = std::max(begun, newest_ - settings_.latency - kLongestGap) - keep_;
-  commands_.drop_before(oldest);
-  wheels_.drop_before(oldest);
-  tilts_.drop_before(oldest);
-  forces_.drop_before(oldest);
-  readings_.drop_before(oldest);
-  if (car_) {
-    car_->drop_before(oldest);
-  }
+  double begun = std::max(now_, newest_ - settings().latency);
+  begun = others_.begins(cutters_.begins(begun));
+  drive_.drop_before(std::max(begun, newest_ - settings().latency - kLongestGap) - keep_);
 }
 
-std::vector<StreamItem> SegmentStream::take_items() { return std::exchange(items_, {}); }
+std::vector<DrivenSegment> SegmentStream::pending_segments() const {
+  PoseAccuracies accuracy = accuracy_;
+  PoseGate gate = gate_;
+  PoseTimer timer = timer_;
+  SegmentCutter cutter = cutters_.learned();
+  std::vector<DrivenSegment> found;
+  for (const MeasuredPose& raw : poses_) {
+    for (const MeasuredPose& pose : gate.push(drive_.complete(raw, accuracy), drive_.gate_inputs(raw.t)).accepted) {
+      const auto timed = timer.push(pose, settings().rules.late_factor);
+      if (!timed) {
+        continue;
+      }
+      for (const SegmentCut& cut : drive_.fitted(cutter.push(*timed, drive_.inputs()), settings().sensor)) {
+        if (!cut.rejected) {
+          found.push_back(drive_.driven(cut, !settings().from_commands, raw.t));
+        }
+      }
+    }
+  }
+  return found;
+}
 
-std::vector<Rejected> SegmentStream::take_rejected() { return std::exchange(rejected_, {}); }
+Segment SegmentStream::over(double start, double end) const {
+  return {.start = start, .end = end, .measured = measured_pose({}, settings().sensor), .heading = heading_};
+}
+
+std::vector<StreamItem> SegmentStream::take_items() { return std::exchange(output_.items, {}); }
+
+std::vector<Rejected> SegmentStream::take_rejected() { return std::exchange(output_.rejected, {}); }
 
 }  // namespace slipwise

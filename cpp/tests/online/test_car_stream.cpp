@@ -63,9 +63,9 @@ TEST_CASE("segments of a car get twists that its curves make, and the curves are
     }
   }
   stream.end_run();
-  REQUIRE(stream.car_curves());
-  CHECK(stream.car_curves()->speed(0.6) == doctest::Approx(true_car().speed(0.6)).epsilon(0.08));
-  CHECK(stream.car_curves()->curvature(0.6) == doctest::Approx(0.9).epsilon(0.08));
+  REQUIRE(stream.drive().car_curves());
+  CHECK(stream.drive().car_curves()->speed(0.6) == doctest::Approx(true_car().speed(0.6)).epsilon(0.08));
+  CHECK(stream.drive().car_curves()->curvature(0.6) == doctest::Approx(0.9).epsilon(0.08));
   int targets = 0;
   for (const StreamItem& item : stream.take_items()) {
     if (const auto* target = std::get_if<TargetSegment>(&item)) {
@@ -174,7 +174,7 @@ TEST_CASE("poses that come late by less than the latency change nothing") {
   late.end_run();
   const auto one = together.take_items(), two = late.take_items();
   REQUIRE(one.size() == two.size());
-  CHECK(together.car_curves()->speed.value == late.car_curves()->speed.value);
+  CHECK(together.drive().car_curves()->speed.value == late.drive().car_curves()->speed.value);
   for (std::size_t i = 0; i < one.size(); ++i) {
     const auto* a = std::get_if<DrivenSegment>(&one[i]);
     const auto* b = std::get_if<DrivenSegment>(&two[i]);

@@ -65,7 +65,8 @@ TEST_CASE("what cannot be used is rejected with its stream and reason, once") {
 
 TEST_CASE("commands to come continue the pose now") {
   const SegmentStream stream = straight_drive();
-  const DrivenSegment ahead = stream.segment_ahead(2.0, {{9.95, {0.5, 0.0, 0.0}}});
+  const DrivenSegment ahead =
+      stream.drive().ahead(stream.over(stream.newest(), stream.newest() + 2.0), {{9.95, {0.5, 0.0, 0.0}}});
   CHECK(ahead.segment.end - ahead.segment.start == doctest::Approx(2.0));
   CHECK(ahead.segment.start <= stream.newest());
 }

@@ -7,89 +7,23 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
-#include <variant>
 #include <vector>
 
-#include "slipwise/hypotheses/cascaded_model.hpp"
 #include "slipwise/online/attitude_gate.hpp"
 #include "slipwise/online/body_rates.hpp"
-#include "slipwise/online/car_stream.hpp"
 #include "slipwise/online/course_finder.hpp"
-#include "slipwise/online/force_buffer.hpp"
 #include "slipwise/online/hold_times.hpp"
-#include "slipwise/online/input_buffer.hpp"
-#include "slipwise/online/learner_times.hpp"
+#include "slipwise/online/measured_drive.hpp"
 #include "slipwise/online/measurement.hpp"
 #include "slipwise/online/motion_evidence.hpp"
-#include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
-#include "slipwise/online/pose_source.hpp"
-#include "slipwise/online/pose_twists.hpp"
-#include "slipwise/online/readings.hpp"
-#include "slipwise/online/rejection.hpp"
+#include "slipwise/online/pose_sources.hpp"
 #include "slipwise/online/sample_gate.hpp"
-#include "slipwise/online/segment_cutter.hpp"
-#include "slipwise/online/tilt_buffer.hpp"
-#include "slipwise/segment/driven_segment.hpp"
+#include "slipwise/online/segment_cutters.hpp"
+#include "slipwise/online/stream_output.hpp"
+#include "slipwise/online/stream_settings.hpp"
 
 namespace slipwise {
-
-/// How measurements become segments.
-struct StreamSettings {
-  bool from_commands = true;          ///< motion is predicted from commands; otherwise from wheel speeds
-  double segment_length = 2.5;        ///< of a learned stretch [s]
-  bool whole_frames = true;           ///< a frame that is shorter is learned as one segment
-  std::optional<double> stride = {};  ///< time between the starts of segments [s]; without one they are disjoint
-  SegmentRules rules = {};
-  double unknown_after = 0.5;                      ///< an input is unknown once it is older than this [s]
-  double latency = 0.5;                            ///< streams may be late relative to each other by up to this [s]
-  std::vector<double> horizons = {1.0, 2.0, 5.0};  ///< of the predictions that are held against what was measured [s]
-  /// The predictions use parameters as they were known so long before their start [s]; without it, a horizon before.
-  std::optional<double> embargo = {};
-  Pose2 sensor = {};                 ///< where the pose sensor is known to sit in base_link
-  std::optional<CarPrior> car = {};  ///< commands are throttle (v) and steering (omega) of a car
-  bool heading_only = false;         ///< no poses come: turns of a gyro alone are learned from
-  /// Of all sources of poses, where there are several or their fixes count; the first is sources[0].
-  std::vector<SourceSettings> sources = {};
-
-  /// From what is known until a prediction over `horizon` [s] starts.
-  double age_of_known(double horizon) const { return std::max(embargo.value_or(horizon), kReady); }
-};
-
-/// A segment whose prediction is held against what was measured.
-struct TargetSegment {
-  std::size_t horizon;  ///< among the settings'
-  DrivenSegment driven;
-  std::optional<InputHistory> baseline = {};  ///< what the kinematic baseline does, where it is not the inputs
-  std::array<std::size_t, 2> classes = {};    ///< of the noise of its poses, where sources are distinguished
-  InputSpread spread = {};                    ///< how the inputs may be else, where a car's curves make them
-};
-
-/// A segment between poses of one of several sources: it is learned where no better one covers the time.
-struct SourceSegment {
-  DrivenSegment driven;
-  std::size_t source;
-  std::array<std::size_t, 2> classes;  ///< of the noise of its poses
-};
-
-/// A segment from which slip is learned behind measured wheel speeds.
-struct SlipSegment {
-  DrivenSegment driven;
-};
-
-/// Commands, and twists between poses that followed them, where no wheel speeds come.
-struct TwistSegment {
-  WheelSegment driven;
-};
-
-/// Something rejected.
-struct Rejected {
-  Stream stream;
-  Reason reason;
-  double t;  ///< [s]
-};
-
-using StreamItem = std::variant<WheelSegment, SlipSegment, TwistSegment, DrivenSegment, TargetSegment, SourceSegment>;
 
 /// Takes measurements of one run after another. Streams are in order each, and late relative to each other by no more
 /// than the latency: a pose is used once no earlier measurement can arrive, so that what comes out does not depend on
@@ -116,11 +50,10 @@ class SegmentStream {
 
   /// The newest stamp of the run [s]; minus infinity before the first.
   double newest() const { return newest_; }
-  const InputBuffer& commands() const { return commands_; }
-  const GyroBuffer& gyro() const { return readings_.gyro(); }
   const AttitudeGate& attitudes() const { return attitudes_; }
-  const InputBuffer& wheels() const { return wheels_; }
-  const StreamSettings& settings() const { return settings_; }
+  const StreamSettings& settings() const { return drive_.settings; }
+  /// What was measured of late beside poses.
+  const MeasuredDrive& drive() const { return drive_; }
   /// Stamps are counted from `origin` [s] from now on, which matters to messages alone.
   void count_from(double origin) { evidence_.count_from(origin); }
   /// What shows whether poses and inputs contradict each other.
@@ -139,22 +72,8 @@ class SegmentStream {
 
   /// The segments that are complete with all that was pushed, were nothing late.
   std::vector<DrivenSegment> pending_segments() const;
-  /// The segment from now on over `horizon` [s], driven by `future` inputs. What is held for longer than any input that
-  /// was measured is repeated, so that there are poses on the way.
-  DrivenSegment segment_ahead(double horizon, const std::vector<InputSample>& future) const;
-  /// Known forces over what lies ahead: those of late, and then the `future` ones.
-  /// \throws std::invalid_argument when one is impossible, or attitudes say that the ground is not level.
-  ForceBuffer forces_ahead(const std::vector<KnownForce>& future) const;
-  /// How the inputs of `segment_ahead` may be else, where a car's curves make them of the commands.
-  InputSpread spread_ahead(double horizon, const std::vector<InputSample>& future) const;
-
-  /// The motion over [start, end] [s] with the inputs that came so far, those of the last `back` [s] before it
-  /// included.
-  DrivenSegment stretch(double start, double end, double back) const;
-  /// What motion is predicted from.
-  const InputBuffer& inputs() const { return settings_.from_commands ? commands_ : wheels_; }
-  /// What throttle and steering do, where they are the commands.
-  std::optional<CarCurves> car_curves() const;
+  /// Over [start, end] [s], with the heading of the last pose that was accepted: to be driven.
+  Segment over(double start, double end) const;
 
   /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
   void check_loaded(const SegmentStream& made) const;
@@ -162,14 +81,12 @@ class SegmentStream {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.settings_, self.keep_, self.newest_, self.stamps_, self.speeds_, self.commands_, self.wheels_,
-      self.wheels_ever_, self.range_, self.rates_, self.held_);
-    a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_,
-      self.wheel_timer_, self.learned_, self.slip_);
-    a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
-      self.learned_last_);
-    a(self.courses_, self.position_last_, self.readings_, self.heading_, self.others_, self.turned_until_, self.turned_,
-      self.attitudes_, self.evidence_, self.forces_, self.steepest_);
+    a(self.drive_, self.keep_, self.newest_, self.stamps_, self.speeds_, self.wheels_ever_, self.range_, self.rates_,
+      self.held_);
+    a(self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_, self.wheel_timer_,
+      self.cutters_, self.output_, self.breaks_, self.learned_last_);
+    a(self.courses_, self.position_last_, self.heading_, self.others_, self.turned_until_, self.turned_,
+      self.attitudes_, self.evidence_, self.steepest_);
   }
 
  private:
@@ -189,53 +106,21 @@ class SegmentStream {
   void process_pose(const MeasuredPose& raw);
   void turn_on(const TimedNumber& sample);
   bool take_first(const MeasuredPose& pose);
-  bool take_other(MeasuredPose pose);
-  void begin_others();
-  void finish_others();
-  void advance_others(double until);
-  void process_other(PoseSource& source, const GatedPoses& gated, double known_at);
-  void emit_other(const PoseSource& source, const SegmentCut& cut, double known_at);
   void process_accepted(const GatedPoses& gated);
-  void reject_gated(const GatedPoses& gated);
   bool head(TimedPose& timed, CourseFinder& courses) const;
-  std::vector<SegmentCut> fitted(std::vector<SegmentCut> cuts, const Pose2& place) const;
-  void emit_learned(const std::vector<SegmentCut>& cuts);
-  void emit_slip(const std::vector<SegmentCut>& cuts);
-  void emit_twists(const std::vector<TwistStretch>& stretches);
-  void emit_targets(std::size_t horizon, const std::vector<SegmentCut>& cuts);
-  void emit_wheel_segments(const std::vector<SegmentCut>& cuts);
-  void finish_cutters();
   void trim();
-  const InputBuffer& gate_inputs(double t) const;
-  std::vector<InputSample> repeated(const std::vector<InputSample>& future, double end) const;
-  DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at,
-                       std::optional<double> horizon = std::nullopt) const;
-  /// What commands ask for over [start, end] and `back` [s] before, by what was known of a car at `known` [s].
-  InputHistory commanded(const Segment& over, double back, double known,
-                         const std::vector<InputSample>& future = {}) const;
-  InputHistory wheels(double start, double end) const;
-  const InputBuffer& given() const { return car_ && settings_.from_commands ? car_->given() : inputs(); }
-  void set_actuator_state(Segment& segment) const;
-  void set_turn(Segment& segment) const;
-  MeasuredPose complete(const MeasuredPose& raw, PoseAccuracies& accuracies) const;
-  void stand_on_ground(Segment& segment, bool foreseen) const;
-  void reject(Stream stream, Reason reason, double t) { rejected_.push_back({stream, reason, t}); }
 
-  StreamSettings settings_;
+  MeasuredDrive drive_;
   double keep_;  ///< how long inputs are kept [s]
   double newest_;
   std::array<StampGate, kStreams - 1 + kReadingKinds> stamps_;  ///< of each kind of readings, which come last
   std::array<std::array<SpeedGate, 3>, 2> speeds_;
-  InputBuffer commands_;
-  InputBuffer wheels_;
   bool wheels_ever_ = false;
   std::array<double, 4> range_;
   AttitudeGate attitudes_;
   double steepest_ = 0.0;
   BodyRates rates_;
   HoldTimes held_;
-  TiltBuffer tilts_;
-  ForceBuffer forces_;
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet
   double now_;                       ///< stamp of the pose that is being used, or was last [s]
@@ -243,23 +128,16 @@ class SegmentStream {
   PoseGate gate_;
   PoseTimer timer_;
   PoseTimer wheel_timer_;
-  SegmentCutter learned_;
-  SegmentCutter slip_;
-  SegmentCutter wheel_cutter_;
-  PoseTwists twists_;
-  std::vector<SegmentCutter> targets_;
-  std::optional<CarStream> car_;  ///< where commands are throttle and steering
-  std::vector<StreamItem> items_;
-  std::vector<Rejected> rejected_;
+  SegmentCutters cutters_;
   long breaks_ = 0;           ///< times that poses were not learned from
   bool learned_last_ = true;  ///< whether the last pose was
   CourseFinder courses_;
-  Readings readings_;
   bool position_last_ = false;               ///< whether the last pose was a position alone
   double heading_ = 0.0;                     ///< of the last pose that was accepted [rad]
-  std::vector<PoseSource> others_;           ///< sources of poses beside the first
   std::optional<TimedNumber> turned_until_;  ///< the last yaw rate, where these alone are learned from
   double turned_ = 0.0;                      ///< integral of yaw rates [rad]
+  PoseSources others_;                       ///< beside the first
+  StreamOutput output_;
   MotionEvidence evidence_;
 };
 
