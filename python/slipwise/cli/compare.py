@@ -114,7 +114,7 @@ def _document(
 
 def _show_differences(out: Output, models: dict[str, Model], rows: Sequence[Difference]) -> None:
     from slipwise.cli.output import Column
-    from slipwise.models.difference import DIFFERENT, same_logs, same_terms
+    from slipwise.models.difference import DIFFERENT, same_drive, same_logs, same_terms
 
     both = [row for row in rows if row.first is not None and row.second is not None]
     different = [row for row in both if row.different]
@@ -130,7 +130,9 @@ def _show_differences(out: Output, models: dict[str, Model], rows: Sequence[Diff
     if cells:
         heads = [Column("number", whole=True), *(Column(name, True) for name in models)]
         out.table("What differs", (*heads, Column("unit"), Column("z", True, whole=True)), cells)
-    if not same_terms(*models.values()):
+    if not same_drive(*models.values()):
+        out.line("The models describe the drive otherwise: only what it does in all and limits are compared.")
+    elif not same_terms(*models.values()):
         out.line("The models have different slip terms: only gains, times and limits are compared.")
     if same_logs(*models.values()):
         out.line(

@@ -15,6 +15,7 @@ from slipwise.models.parameter_table import PhysicalParameter, physical_paramete
 from slipwise.models.schema import AxisShares
 from slipwise.models.share_words import AXES, axis_shares
 from slipwise.models.slip_words import Gain, slip_gains
+from slipwise.models.step_response import StepResponse, step_responses
 
 #: Standard deviations of a difference from which on two models differ.
 DIFFERENT = 3.0
@@ -47,10 +48,11 @@ class Difference:
 
 
 def differences(first: Model, second: Model) -> tuple[Difference, ...]:
-    """Compare gains of the body, and all parameters.
+    """Compare gains of the body, how soon it follows, and all parameters.
 
     Gains can be compared whatever the bases are. Slip terms are compared where both have the same ones,
-    since a term means something else beside others.
+    since a term means something else beside others. So does a delay beside a lag, and slip behind a gain
+    of the drive: where drives are described otherwise, only what they do in all is compared.
 
     Raises:
         ModelError: one was learned from commands, the other from wheel speeds, or one is of a car that is
@@ -72,7 +74,7 @@ def differences(first: Model, second: Model) -> tuple[Difference, ...]:
             advice="learn both with the wheelbase, or neither",
         )
     rows = [_paired(*gains) for gains in zip(_gains(first), _gains(second), strict=True)]
-    rows += [*_share_rows(first, second), *_curve_rows(first, second)]
+    rows += [*_step_rows(first, second), *_share_rows(first, second), *_curve_rows(first, second)]
     tables = [{p.name: p for p in _comparable(model, first, second)} for model in (first, second)]
     for name in dict.fromkeys((*tables[0], *tables[1])):
         one, other = (table.get(name) for table in tables)
@@ -93,20 +95,50 @@ def same_terms(first: Model, second: Model) -> bool:
     return all(getattr(slips[0], name) == getattr(slips[1], name) for name in ("lon", "lat", "ang"))
 
 
+def same_drive(first: Model, second: Model) -> bool:
+    """Whether lags, delays, gains of the drive and the clock of the poses are described alike."""
+    drives = [model.table.of("actuator", "clock").names for model in (first, second)]
+    return drives[0] == drives[1]
+
+
 def _comparable(model: Model, first: Model, second: Model) -> tuple[PhysicalParameter, ...]:
-    parameters = physical_parameters(model)
-    return parameters if same_terms(first, second) else parameters[model.motion.slip_size :]
+    apart: tuple[str, ...] = () if same_terms(first, second) else ("slip", "force")
+    if not same_drive(first, second):
+        apart = ("slip", "force", "actuator", "clock")
+    return tuple(p for p in physical_parameters(model) if p.stage not in apart)
 
 
 def _gains(model: Model) -> list[tuple[str, Gain | None]]:
-    gains = slip_gains(model)
+    """Gains of the body over what is commanded, or over what the wheels say."""
+    gains, drive = slip_gains(model), {p.name: Gain(p.value, p.std) for p in physical_parameters(model)}
+    exact = Gain(1.0, 0.0)
+    of_speed, of_turn = (drive.get(name, exact) for name in ("gain_v", "gain_omega"))
     separation = gains.separation if model.content.input == "wheel" else None
     return [
-        ("speed gain", gains.speed),
-        ("sideways gain", gains.sideways),
-        ("yaw-rate gain", gains.yaw_rate),
+        ("speed gain", gains.speed.times(of_speed)),
+        ("sideways gain", None if gains.sideways is None else gains.sideways.times(of_speed)),
+        ("yaw-rate gain", gains.yaw_rate.times(of_turn)),
         ("separation multiplier", separation),
     ]
+
+
+def _step_rows(first: Model, second: Model) -> list[Difference]:
+    """How long 63 % of a step take, by delay and lags together; by the same clock alone."""
+    if first.content.input != "command" or first.car is not None:
+        return []
+    if first.content.clock_offset != second.content.clock_offset:
+        return []
+    turn = "yaw rate" if first.content.wheelbase is None else "steering"
+    steps = ([_risen(step) for step in step_responses(model)] for model in (first, second))
+    return [
+        Difference(f"63 % of a step of {name}", "s", one, other)
+        for name, one, other in zip(("speed", turn), *steps, strict=True)
+    ]
+
+
+def _risen(step: StepResponse) -> tuple[float, float] | None:
+    """Seconds and standard deviation; None where it is never there, or where there is nothing to learn."""
+    return step.risen if math.isfinite(step.risen[0]) and step.risen[1] > 0.0 else None
 
 
 def _share_rows(first: Model, second: Model) -> list[Difference]:

@@ -48,22 +48,21 @@ def step_responses(model: Model) -> tuple[StepResponse, StepResponse]:
 def _numbers(model: Model, parameters: Floats) -> Floats:
     """Seconds to 63 % of speed and yaw rate, and what of both has arrived soon, [4]."""
     actuator = model.motion.actuator(parameters)
-    delays = (actuator.delay_v, actuator.delay_omega, 0.0)
-    fast = _lagging(_core.ActuatorModel(actuator.time_constant_v, actuator.time_constant_omega, *delays))
-    slow = _lagging(
-        _core.ActuatorModel(actuator.slow_time_constant_v, actuator.slow_time_constant_omega, *delays)
-    )
+    delays = np.array([actuator.delay_v, actuator.delay_omega])
+    fast = _lagging(actuator.time_constant_v, actuator.time_constant_omega)
+    slow = _lagging(actuator.slow_time_constant_v, actuator.slow_time_constant_omega)
     fraction = np.array([actuator.slow_fraction_v, actuator.slow_fraction_omega])
     arrived = (1.0 - fraction) * fast + fraction * slow  # two lags side by side
-    soon = [np.interp(SOON, _TIMES, channel) for channel in arrived.T]
-    gains = np.array([actuator.gain_v, actuator.gain_omega])
-    return np.concatenate(([_risen(channel) for channel in arrived.T], gains * soon))
+    soon = [np.interp(SOON - delays[k], _TIMES, arrived[:, k], left=0.0) for k in (0, 1)]
+    risen = delays + [_risen(channel) for channel in arrived.T]
+    return np.concatenate((risen, np.array([actuator.gain_v, actuator.gain_omega]) * soon))
 
 
-def _lagging(actuator: _core.ActuatorModel) -> Floats:
-    """Speed and yaw rate after a step of both to 1, [times, 2]."""
+def _lagging(time_constant_v: float, time_constant_omega: float) -> Floats:
+    """Speed and yaw rate after a step of both to 1 that comes without delay, [times, 2]."""
     step = _core.InputHistory(*(np.array([value]) for value in (0.0, 1.0, 0.0, 1.0)))
-    return _core.actuator_output(step, actuator, _TIMES, _core.BodyTwist(0.0, 0.0, 0.0))
+    lags = _core.ActuatorModel(time_constant_v, time_constant_omega, 0.0, 0.0, 0.0)
+    return _core.actuator_output(step, lags, _TIMES, _core.BodyTwist(0.0, 0.0, 0.0))
 
 
 def _risen(arrived: Floats) -> float:

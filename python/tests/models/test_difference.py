@@ -39,6 +39,28 @@ def test_slip_terms_of_other_bases_are_not_compared_but_gains_are() -> None:
     assert names == {"speed gain", "yaw-rate gain", "separation multiplier"}
 
 
+def test_a_delay_alone_and_a_lag_behind_one_are_compared_by_a_step() -> None:
+    """Delays of 0.5 s and of 0.2 s before a lag of 0.3 s are no change of the robot."""
+    delayed = make_model(replace(named("edd-2", ang__w=-0.4), delays=(0.5, 0.6)))
+    lagging = make_model(replace(named("edd-2", ang__w=-0.4), commands=True))
+    rows = {row.name: row for row in differences(delayed, lagging)}
+    assert {name for name, row in rows.items() if row.different} == {"63 % of a step of yaw rate"}
+    step = rows["63 % of a step of speed"]
+    assert step.first == pytest.approx((0.5, 0.01))
+    assert step.second == pytest.approx((0.5, 0.01 * math.hypot(0.2, 0.3)), rel=0.01)
+    assert not {"delay_v", "ang.w"} & set(rows)
+
+
+def test_slip_behind_a_gain_of_the_drive_is_compared_with_it() -> None:
+    """A drive of 0.8 beside slip of 0.25, of which wheels tell, is a slip of 0.4 without wheels."""
+    wheels = make_model(replace(named("edd-2", lon__V=-0.25, gain_v=0.8, gain_omega=1.0), response=True))
+    alone = make_model(replace(named("edd-2", lon__V=-0.4), commands=True))
+    rows = {row.name: row for row in differences(wheels, alone)}
+    assert rows["speed gain"].first == pytest.approx((0.6, math.hypot(0.8 * 0.01, 0.75 * 0.01)))
+    assert rows["speed gain"].second == pytest.approx((0.6, 0.01))
+    assert "lon.V" not in rows
+
+
 def test_a_limit_that_one_model_lacks_is_listed_without_a_z() -> None:
     made = replace(named("edd-2"), commands=True)
     rows = differences(make_model(made), make_model(replace(made, limits=LIMITS)))
