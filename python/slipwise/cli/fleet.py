@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from slipwise.fleet import ParameterFindings, Scheduler
     from slipwise.fleet.learn_fleet import Count
 
+_MOST_UNUSABLE = 5  # logs whose reasons are printed; the page lists all
+
 
 def fleet(
     logs: Annotated[
@@ -68,8 +70,7 @@ def fleet(
     refuse_unwritable(*files.values(), out.written_file, inputs=[settings])
     learns = _scheduler(scheduler, workers)
     found = find_logs(logs, vehicle=name)
-    store = Store(output)
-    _check_settings(settings)
+    store = Store(output, _settings_hash(settings))
     mended = store.mend()
     for sentence in mended:
         out.line(sentence)
@@ -90,8 +91,9 @@ def fleet(
     out.document(_document(count, findings, unusable, files) | {"set_aside": mended, "exit_code": code})
     for sentence in sentences:
         out.line(sentence)
-    for log, why in (*count.failed, *count.copies):
-        out.line(f"{log}: {why}")
+    left_out = [(str(entry["log"]), str(entry["failure"])) for entry in unusable[:_MOST_UNUSABLE]]
+    for log, why in (*left_out, *count.failed, *count.copies):
+        out.line(why if log in why else f"{log}: {why}")
     show_files(out, files | {"rows": output / "rows"})
     return code
 
@@ -106,12 +108,14 @@ def _scheduler(address: str | None, workers: int | None) -> Scheduler:
     return DaskScheduler(address)
 
 
-def _check_settings(settings: Path | None) -> None:
-    """Refuse wrong settings once, before every worker does."""
-    from slipwise.calibration import load_settings
+def _settings_hash(settings: Path | None) -> str:
+    """Return the hash of the settings; refuse wrong ones once, before every worker does."""
+    from slipwise.calibration import Settings, load_settings
+    from slipwise.fleet.learned_rows import settings_hash
 
-    if settings is not None:
-        load_settings(settings).bases()
+    read = Settings() if settings is None else load_settings(settings)
+    read.bases()
+    return settings_hash(read)
 
 
 def _left_text(seconds: float) -> str:

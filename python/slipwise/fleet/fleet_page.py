@@ -17,6 +17,7 @@ from slipwise.fleet.findings import (
     ParameterFindings,
     rows_by_parameter,
 )
+from slipwise.fleet.log_kinds import logs_of_kinds
 from slipwise.fleet.vehicle_numbers import logs_of, types_apart
 from slipwise.models.parameter_table import physical_name
 from slipwise.number_text import DASH, count_text
@@ -162,11 +163,14 @@ def summary(
         "A vehicle is compared with the others where there are three or more, "
         f"its drift is tested from {FEWEST_LOGS} logs on."
     )
+    kinds = logs_of_kinds(columns)
+    apart = ", ".join(f"{count} from {kind}" for kind, count in kinds.most_common())
     warned = types_apart(columns)
     left = "1 log" if len(unusable) == 1 else f"{len(unusable)} logs"
     return [
         driven,
         *([f"{left} could not be used."] if unusable else []),
+        *([f"Logs were learned {apart}: each is compared with its like alone."] if len(kinds) > 1 else []),
         *([warned] if warned else []),
         tested,
         *_least_words(findings),

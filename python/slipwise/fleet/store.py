@@ -22,6 +22,7 @@ from slipwise.calibration.log_knowledge import LogKnowledge
 from slipwise.files import output_errors, write_text_whole, write_whole
 from slipwise.fleet.knowledge_file import knowledge_from
 from slipwise.fleet.learned_rows import LogRows, Row
+from slipwise.fleet.log_kinds import by_kind
 from slipwise.fleet.vehicle_numbers import NAMES
 
 ROWS, UNUSABLE, KNOWLEDGE, ADDRESSES = "rows", "unusable", "knowledge", "addresses"
@@ -35,6 +36,7 @@ COLUMNS = (
     "start",
     "seconds",
     "distance",
+    "input",
     "good",
     "parameter",
     "unit",
@@ -42,7 +44,7 @@ COLUMNS = (
     "std",
     *NAMES,
 )
-_TEXTS = ("vehicle", "month", "key", "parameter", "unit")
+_TEXTS = ("vehicle", "month", "key", "input", "parameter", "unit")
 PARTS = "vehicle=*/month=*/*.parquet"  # not those in the making, which lie in hidden folders
 AT_ONCE = 500  # files
 MOST_KNOWN = 4000  # logs that the prior is made of, so that the driver's memory stays bounded
@@ -54,15 +56,34 @@ __all__ = ["Row", "Store"]
 
 
 class Store:
-    """A folder of results: `rows/vehicle=X/month=Y/KEY.parquet`, `knowledge`, and `unusable/KEY.json`."""
+    """A folder of results: `rows/vehicle=X/month=Y/KEY.parquet`, `knowledge`, and `unusable/KEY.json`.
 
-    def __init__(self, folder: Path) -> None:
+    A log that was learned with several settings counts once: with those of `settings_sha256`, or as it was
+    learned last.
+    """
+
+    def __init__(self, folder: Path, settings_sha256: str = "") -> None:
         self.folder = folder
+        self._settings = settings_sha256[:16]
 
     def keys(self) -> frozenset[str]:
         """Return the keys of all logs that need not be learned again, the unusable ones too."""
+        return frozenset(path.stem for path in self._results())
+
+    def _results(self) -> list[Path]:
         found = [*(self.folder / ROWS).glob(PARTS), *(self.folder / UNUSABLE).glob("*.json")]
-        return frozenset(path.stem for path in found if _KEY.fullmatch(path.stem))
+        return [path for path in found if _KEY.fullmatch(path.stem)]
+
+    def _counting(self) -> set[str]:
+        """Return the keys that count, one of each log."""
+        of_log: dict[str, Path] = {}
+        for path in self._results():
+            log = path.stem.partition("-")[0]
+            of_log[log] = max(of_log[log], path, key=self._order) if log in of_log else path
+        return {path.stem for path in of_log.values()}
+
+    def _order(self, path: Path) -> tuple[bool, int]:
+        return path.stem.endswith(f"-{self._settings}"), path.stat().st_mtime_ns
 
     def add(self, learned: LogRows) -> Path:
         """Write what was learned of one log, or why nothing was; return the file.
@@ -115,14 +136,16 @@ class Store:
     def table(self) -> dict[str, NDArray[Any]]:
         """Return the columns `COLUMNS` of all rows by name, in order of vehicle and time; empty without rows.
 
+        Parameters of logs with other inputs than most have names of their own (`log_kinds.py`).
         Some files are read at once, and a text is there once: thousands of logs take little memory.
         """
-        paths = sorted((self.folder / ROWS).glob(PARTS))
+        counting = self._counting()
+        paths = sorted(path for path in (self.folder / ROWS).glob(PARTS) if path.stem in counting)
         parts = [_read(paths[first : first + AT_ONCE]) for first in range(0, len(paths), AT_ONCE)]
         parts = [part for part in parts if len(part["key"])]
         if not parts:
             return {}
-        columns = {name: np.concatenate([part[name] for part in parts]) for name in COLUMNS}
+        columns = by_kind({name: np.concatenate([part[name] for part in parts]) for name in COLUMNS})
         order = np.lexsort((columns["parameter"], columns["start"], columns["vehicle"]))
         return {name: values[order] for name, values in columns.items()}
 
@@ -133,14 +156,15 @@ class Store:
             most: logs; of more, each vehicle has equally many, drawn by the hash that names them.
         """
         found = []
-        for path in _spread(self.folder / KNOWLEDGE, most):
+        for path in _spread(self.folder / KNOWLEDGE, most, self._counting()):
             with contextlib.suppress(ValueError, OSError):
                 found.append((unquote(path.parent.name.removeprefix("vehicle=")), _knowledge(path)))
         return found
 
     def unusable(self) -> list[dict[str, Any]]:
         """Return log, vehicle and failure of every log that could not be used, in order of the log."""
-        found = [_unusable(path) for path in (self.folder / UNUSABLE).glob("*.json")]
+        counting = self._counting()
+        found = [_unusable(p) for p in (self.folder / UNUSABLE).glob("*.json") if p.stem in counting]
         return sorted(found, key=lambda entry: str(entry["log"]))
 
     def mend(self) -> list[str]:
@@ -178,9 +202,9 @@ class Store:
                     each.replace(aside / each.name)
 
 
-def _spread(folder: Path, most: int) -> list[Path]:
-    """Return the files of all vehicles, in order; of more than `most`, equally many of each vehicle."""
-    paths = sorted(folder.glob("vehicle=*/*.json"))
+def _spread(folder: Path, most: int, counting: set[str]) -> list[Path]:
+    """Return the files that count, in order; of more than `most`, equally many of each vehicle."""
+    paths = sorted(path for path in folder.glob("vehicle=*/*.json") if path.stem in counting)
     if len(paths) <= most:
         return paths
     place = Counter[str]()  # of a file among those of its vehicle
@@ -244,7 +268,7 @@ def _read(paths: list[Path]) -> dict[str, NDArray[Any]]:
     files = dataset.dataset(list(map(str, paths)), schema=schema, format="parquet", partitioning=partitioned)
     table = files.to_table(list(COLUMNS))
     return {
-        name: np.array(list(map(intern, table[name].to_pylist())), dtype=object)
+        name: np.array([intern(text or "") for text in table[name].to_pylist()], dtype=object)
         if pa.types.is_string(table[name].type)
         else table[name].to_numpy()
         for name in COLUMNS

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.fleet.log_kinds import logs_of_kinds
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import known
 from slipwise.models.slip_words import slip_gains
@@ -94,9 +95,14 @@ def median(columns: Mapping[str, NDArray[Any]], name: str, rows: NDArray[np.int6
 def types_apart(columns: Mapping[str, NDArray[Any]]) -> str:
     """Say which vehicles look like another type of robot; empty where the fleet looks like one.
 
-    Two groups are of two types where the smallest ratio between them is at least `APART`, and, as a
-    logarithm, `CLEARLY` times the largest between neighbours and between logs of a vehicle in either group.
+    Vehicles are compared by logs that were learned from what most were. Two groups are of two types where
+    the smallest ratio between them is at least `APART`, and, as a logarithm, `CLEARLY` times the largest
+    between neighbours and between logs of a vehicle in either group.
     """
+    kinds = logs_of_kinds(columns)
+    if len(kinds) > 1:
+        usual = columns["input"] == kinds.most_common(1)[0][0]
+        columns = {name: values[usual] for name, values in columns.items()}
     logs = logs_of(columns)
     best: tuple[float, str] = (0.0, "")
     for name in ("turns", "drives", "multiplier"):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,7 +12,8 @@ import pyarrow.parquet as parquet
 import pytest
 from fleet.work_samples import sample_rows
 
-from slipwise.fleet import Store
+from slipwise.fleet import Row, Store, findings_of
+from slipwise.fleet.fleet_page import summary
 from slipwise.fleet.vehicle_numbers import NAMES, VehicleNumbers
 
 OTHER = "fedcba9876543210-0123456789abcdef"
@@ -31,6 +33,34 @@ def test_table_holds_a_row_per_log_and_parameter(tmp_path: Path) -> None:
     assert table["parameter"].tolist() == ["ang.w", "lon.V"] * 2
     assert table["value"].tolist() == [-0.3, -0.1] * 2
     assert table["month"].tolist() == ["2026-12", "2026-12", "2026-11", "2026-11"]
+
+
+def test_log_learned_with_other_settings_counts_once(tmp_path: Path) -> None:
+    """The rows of the settings that are asked for count, else those that were learned last."""
+    first, other = sample_rows(), sample_rows(key="0123456789abcdef-fedcba9876543210", failure="no", rows=())
+    asked = Store(tmp_path, "0123456789abcdef" * 4)
+    asked.add(first)
+    os.utime(asked.add(other), ns=(2**62, 2**62))
+    assert len(asked.table()["key"]) == 2
+    assert asked.unusable() == []
+    last = Store(tmp_path)
+    assert last.table() == {}
+    assert len(last.unusable()) == 1
+
+
+def test_logs_of_other_inputs_have_parameters_of_their_own(tmp_path: Path) -> None:
+    """Slip of 0.1 behind a drive of 0.8 and slip of 0.28 without wheel speeds are one robot."""
+    store = Store(tmp_path)
+    gain = Row("gain_v", "-", 0.8, 0.01, 0.2, True)
+    for k in range(2):
+        store.add(sample_rows(key=f"{k:016x}-0123456789abcdef", rows=(*sample_rows().rows, gain)))
+    alone = Row("lon.V", "m/s per V", -0.28, 0.02, 0.3, True)
+    store.add(sample_rows(key=OTHER, vehicle="two", rows=(alone,)))
+    table = store.table()
+    names = {name: set(table["parameter"][table["vehicle"] == name]) for name in ("one", "two")}
+    assert names == {"one": {"ang.w", "lon.V", "gain_v"}, "two": {"lon.V (commands alone)"}}
+    said = "Logs were learned 2 from commands and wheel speeds, 1 from commands alone: each is compared with"
+    assert any(text.startswith(said) for text in summary(table, findings_of(table), []))
 
 
 def test_rows_of_an_older_version_have_no_numbers_of_the_vehicle(tmp_path: Path) -> None:
