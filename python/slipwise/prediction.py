@@ -162,7 +162,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             f"a horizon of {horizon:g} s is too long", advice=f"give {LONGEST_HORIZON:g} s at most"
         )
     _check_speeds("commands", inputs.v, inputs.vy, inputs.omega)
-    warn_of_unseen_speeds(model, np.column_stack((inputs.v, inputs.omega)), stacklevel=3)
+    warn_of_unseen_speeds(model, np.column_stack((inputs.v, inputs.vy, inputs.omega)), stacklevel=3)
     begin = float(inputs.t[0]) if start is None else float(start)
     if not (np.isfinite(begin) and begin >= inputs.t[0]):
         raise SettingsError("the start must not lie before the first command", advice="give earlier commands")

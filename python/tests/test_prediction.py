@@ -201,6 +201,19 @@ def test_a_side_that_was_never_driven_is_warned_of() -> None:
         predict(one_sided, [(0.0, 1.0, -0.1), (0.5, -0.1, 1.0)], horizon=1.0)
 
 
+def test_an_axis_that_was_never_driven_is_warned_of() -> None:
+    straight = make_model(replace(named("edd-2"), yaw_rate=(0.0, 0.0)))
+    with pytest.warns(UserWarning, match="yaw rate of 0.500 rad/s is far beyond the 0 rad/s"):
+        predict(straight, [(0.0, 0.5, 0.5)], horizon=1.0)
+    span = straight.content.range.model_copy(update={"sideways": (-0.5, 0.5)})
+    omni = Model(straight.content.model_copy(update={"range": span}))
+    with pytest.warns(UserWarning, match="sideways speed of 2.00 m/s is far beyond the 0.500 m/s"):
+        predict(omni, [(0.0, 0.5, 2.0, 0.0)], horizon=1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        predict(omni, [(0.0, 0.5, 0.6, 0.01)], horizon=1.0)
+
+
 def test_speeds_of_no_robot_are_refused(model: Model) -> None:
     with pytest.raises(SettingsError, match=r"the commands reach 1e[+]300, .* m/s and omega in rad/s"):
         predict(model, [[0.0, 1e300, 1e300]], horizon=5.0)

@@ -13,6 +13,7 @@ from slipwise.errors import PlanningError, SettingsError
 from slipwise.ground import Grade, Pose, rise_of
 from slipwise.models.axes import SIDEWAYS, THROTTLE, TWIST, Axes, drive_axes
 from slipwise.models.model import Model
+from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
 from slipwise.planning.reference_path import ReferencePath
@@ -256,6 +257,7 @@ class Controller:
                 where="controller's reference",
                 advice="such as ReferencePath(points, speed=1.0)",
             )
+        self._unwarned = motions if isinstance(motions, Model) else None
         motions = learned_motions(motions) if isinstance(motions, Model) else motions
         self.reference, self.options = reference, options
         self._obstacles = obstacles  # keeps the cells
@@ -272,16 +274,20 @@ class Controller:
         Raises:
             SettingsError: there is no motion, or one has no sense.
         """
+        unwarned = motions if isinstance(motions, Model) else None
         motions = learned_motions(motions) if isinstance(motions, Model) else motions
         try:
             self._core.adopt(_as_core(motions), _car_of(motions, self.options))
         except (ValueError, TypeError) as problem:
             raise SettingsError(str(problem).splitlines()[0], where="controller's motions") from problem
+        self._unwarned = unwarned
 
     def command(
         self, pose: Pose, drive: tuple[float, ...], *, last: tuple[float, ...] | None = None
     ) -> tuple[float, ...]:
         """Return the next command; call it once per period.
+
+        It warns once where it commands speeds that the model it was given has not seen.
 
         It is (v [m/s], omega [rad/s]), (throttle, steering) of a car that takes these, or (v, vy, omega) of a
         robot that drives sideways.
@@ -309,4 +315,6 @@ class Controller:
             kind = PlanningError if "obstacle" in str(problem) else SettingsError
             raise kind(str(problem), where="controller") from problem
         self._past = np.vstack((self._past, result.command))[-MOST_PAST:]
+        if self._unwarned is not None and warn_of_unseen_speeds(self._unwarned, result.command, stacklevel=2):
+            self._unwarned = None
         return self._commands.of_twist(result.command)

@@ -11,7 +11,7 @@ from planning.planning_samples import learned_model, walled_map
 from sample_models import LIMITS, Made, make_model
 
 from slipwise import _core
-from slipwise.errors import PlanningError, SettingsError
+from slipwise.errors import PlanningError, SettingsError, UnseenSpeed
 from slipwise.ground import Grade
 from slipwise.planning import (
     Controller,
@@ -62,6 +62,16 @@ def test_motions_are_exchanged_under_way() -> None:
     assert kept.command(*at) != other.command(*at)
     with pytest.raises(SettingsError, match="at least one model"):
         other.adopt([])
+
+
+def test_a_side_that_was_never_driven_is_warned_of_once() -> None:
+    one_sided = make_model(Made(_core.named_basis("edd-2"), commands=True, yaw_rate=(0.0, 1.0)))
+    controller = Controller(one_sided, straight(), options=QUICK)
+    left_of_track = ((1.0, 1.5, 0.0), (0.5, 0.0))
+    with pytest.warns(UnseenSpeed, match="yaw rate of -.* rad/s is far beyond the 0 rad/s") as caught:
+        turns = [controller.command(*left_of_track)[1] for _ in range(10)]
+    assert min(turns) < -0.2
+    assert len(caught) == 1
 
 
 def test_drawn_motions_differ_as_their_covariance_says_and_follow_the_seed() -> None:
