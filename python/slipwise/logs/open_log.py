@@ -21,6 +21,7 @@ from slipwise.logs.quality import checked
 from slipwise.logs.remote import local_file
 from slipwise.logs.run_name import run_name
 from slipwise.logs.time_span import cut_to_span
+from slipwise.models.axes import sideways_span
 
 _KNOWN = (
     "give a tidy CSV, CSV.gz or Parquet file, a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder), "
@@ -156,7 +157,18 @@ def _completed(log: Log, options: LogOptions) -> Log:
 
 
 def _steered(log: Log, wheelbase: float) -> Log:
-    """Say of all commands that they are to a robot that steers."""
+    """Say of all commands that they are to a robot that steers.
+
+    Raises:
+        LogError: they drive it sideways.
+    """
+    given = [run.commands for run in log.runs if run.commands is not None]
+    if any(sideways_span(commands.v, commands.vy) is not None for commands in given):
+        raise LogError(
+            "commands drive the robot sideways, and a wheelbase is of one that steers",
+            where=log.sources[0].path,
+            advice="leave the wheelbase away",
+        )
     runs = tuple(
         run if run.commands is None else replace(run, commands=replace(run.commands, wheelbase=wheelbase))
         for run in log.runs

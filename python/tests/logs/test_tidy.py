@@ -106,6 +106,12 @@ def test_steering_gives_omega_with_a_wheelbase(tmp_path: Path) -> None:
     assert commands.wheelbase == 0.5
 
 
+def test_a_wheelbase_of_a_robot_that_is_commanded_sideways_is_refused(tmp_path: Path) -> None:
+    path = table(tmp_path, "0,1,0.5,0.1,0,0,0", header="t,cmd_v,cmd_vy,cmd_omega,x,y,yaw")
+    with pytest.raises(LogError, match="commands drive the robot sideways, and a wheelbase is of one that"):
+        open_log(path, options=LogOptions(wheelbase=0.5))
+
+
 def test_a_car_that_stands_with_turned_wheels_has_their_curvature_in_its_commands(tmp_path: Path) -> None:
     rows = ["0,0,0.1,0,0,0", "0.1,0,0,0,0,0", "0.2,-1,0.1,0,0,0"]
     path = table(tmp_path, *rows, header="t,cmd_v,cmd_steer,x,y,yaw")
