@@ -35,7 +35,9 @@ class Calibration(calibration.Calibration):
 
         Raises:
             OutputError: the file cannot be written.
+            SettingsError: this is no path.
         """
+        check_arguments(Calibration.report, locals())
         from slipwise.reporting.session import report_calibration
 
         report_calibration(Path(path), self.log, self, self.settings)

@@ -16,7 +16,14 @@ import numpy as np
 from slipwise.errors import SettingsError
 from slipwise.number_text import list_text
 
-_WORDS = {float: "a number", int: "a whole number", bool: "True or False", str: "text", Path: "a path"}
+_WORDS = {
+    float: "a number",
+    int: "a whole number",
+    bool: "True or False",
+    str: "text",
+    bytes: "bytes",
+    Path: "a path",
+}
 _NUMBERS = {float: ("__float__", "__index__"), int: ("__index__",)}  # kinds, and how they are converted
 _LEFT = ("ArrayLike", "DTypeLike")  # to the functions
 _LONGEST = 40  # characters of a value in a message

@@ -14,7 +14,7 @@ from sample_models import make_model, named
 import slipwise as sw
 from slipwise.argument_types import check_arguments
 from slipwise.errors import SettingsError
-from slipwise.planning import rollout, trajectory_to
+from slipwise.planning import load_map, rollout, trajectory_to
 
 MODEL = make_model(named("edd-2"))
 COMMANDS = [(0.0, 0.5, 0.1)]
@@ -48,6 +48,12 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
         r"^old is None \(compare\(\)\): give a Model or a path",
     ),
     "a path": (lambda: sw.open_log(WRONG), r"^paths is None \(open_log\(\)\): give a path$"),
+    "where to save": (lambda: MODEL.save(WRONG), r"^path is None \(Model.save\(\)\): give a path$"),
+    "a saved learner": (
+        lambda: sw.MotionLearner.load(WRONG),
+        r"^saved is None \(MotionLearner.load\(\)\): give bytes$",
+    ),
+    "a map": (lambda: load_map(WRONG), r"^path is None \(load_map\(\)\): give a path$"),
     "a model file": (lambda: sw.load_model(WRONG), r"^path is None \(load_model\(\)\): give a path$"),
     "a table": (lambda: sw.make_settings(WRONG), r"^content is None \(make_settings\(\)\): give a dict$"),
     "a summary": (lambda: sw.summarise(WRONG), r"^model is None \(summarise\(\)\): give a Model$"),

@@ -106,3 +106,10 @@ def test_inspect_of_a_model_says_what_shows_it(tmp_path: Path, capsys: pytest.Ca
     text = " ".join(capsys.readouterr().err.split())
     assert "a model, not a log" in text
     assert "slipwise show" in text
+
+
+def test_a_log_in_place_of_a_model_says_what_learns_one() -> None:
+    with pytest.raises(
+        sw.SlipwiseError, match=r"a log, not a model \(run.mcap\): `slipwise calibrate run.mc"
+    ):
+        sw.load_model("run.mcap")

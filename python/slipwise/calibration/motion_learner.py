@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from slipwise import _core
+from slipwise.argument_types import check_arguments
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
 from slipwise.calibration.coming import Coming
 from slipwise.calibration.core_settings import NOTHING_PARTICULAR, car_of, core_settings, wheelbase_of
@@ -338,6 +339,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         Raises:
             SettingsError: these are not the bytes that this version of slipwise saved.
         """
+        check_arguments(MotionLearner.load, locals())
         try:
             body = _core.opened(saved)
             split = _LENGTH_BYTES + int.from_bytes(body[:_LENGTH_BYTES], "little")

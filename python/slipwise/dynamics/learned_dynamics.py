@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from slipwise import _core
+from slipwise.argument_types import check_arguments
 from slipwise.dynamics.dynamics import Dynamics
 from slipwise.errors import SettingsError
 from slipwise.models.schema import UNIDENTIFIABLE_RATIO
@@ -186,7 +187,9 @@ class LearnedDynamics:
 
         Raises:
             OutputError: it cannot be written.
+            SettingsError: this is no path.
         """
+        check_arguments(LearnedDynamics.save, locals())
         from slipwise.dynamics.saved_dynamics import save_dynamics
 
         return save_dynamics(self, Path(path))

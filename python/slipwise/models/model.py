@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+LOGS = (".csv", ".parquet", ".mcap", ".db3", ".bag")  # what names of logs mostly end in
 _HINTS = {
     "predict": "slipwise.predict(model, commands, horizon=5.0)",
     "evaluate": "slipwise.evaluate(log, model=model)",
@@ -319,7 +320,9 @@ class Model:
 
         Raises:
             OutputError: the file cannot be written.
+            SettingsError: this is no path.
         """
+        check_arguments(Model.save, locals())
         target = Path(path)
         write_text_whole(target, self.to_yaml())
         return target
@@ -342,6 +345,12 @@ def load_model(path: str | Path, *, input: str | None = None) -> Model:
         SettingsError: there is no such input.
     """
     check_arguments(load_model, locals())
+    if Path(path).suffix in LOGS:
+        raise ModelError(
+            "a log, not a model",
+            where=str(path),
+            advice=f"`slipwise calibrate {path} -o model.yaml` learns one",
+        )
     return _model_of(read_yaml(Path(path)), str(path)).of_input(input)
 
 

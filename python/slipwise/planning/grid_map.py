@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from slipwise import _core
+from slipwise.argument_types import check_arguments
 from slipwise.errors import PlanningError
 from slipwise.models.yaml_file import read_yaml
 from slipwise.planning.pgm import MOST_PIXELS, read_levels
@@ -81,7 +82,9 @@ def load_map(path: str | Path, *, most_cells: int = MOST_PIXELS) -> GridMap:
 
     Raises:
         PlanningError: a file is missing or wrong, or the map is rotated.
+        SettingsError: this is no path.
     """
+    check_arguments(load_map, locals())
     source = Path(path)
     content = read_yaml(source, error=PlanningError)
     levels, white = read_levels(_image(source, content), most_pixels=most_cells)
