@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import time
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -26,6 +27,8 @@ from slipwise.logs.remote import lent, remote_version
 from slipwise.models.body_force import without_force
 from slipwise.models.car import curve_gains
 from slipwise.models.model import Model
+from slipwise.models.parameter_table import known
+from slipwise.models.step_response import rise_times
 
 FIRST_UNIX_TIME = 946684800.0  # s, the year 2000; a log with earlier stamps counts from its own start
 
@@ -38,7 +41,7 @@ class Row:
     unit: str
     value: float
     std: float
-    prior_std: float
+    prior_std: float  # NaN of what follows from several parameters
     identifiable: bool
 
 
@@ -98,6 +101,8 @@ def _learned(task: LogTask, settings: Settings, changed: float) -> LogRows:
     except SlipwiseError as problem:
         return replace(head, failure=str(problem))
     content = calibration.model.content
+    if content.verdict.contradictions:  # its numbers are of no robot
+        return replace(head, failure=calibration.verdict.sentence)
     start = _start(log, changed)
     return replace(
         head,
@@ -173,11 +178,17 @@ def _distance(log: Log) -> float:
 
 
 def _rows(model: Model) -> tuple[Row, ...]:
-    """A curve is one number here: fifty values of it would hide what is odd among tests of chance."""
+    """All parameters, and how late the robot is in all, which compares where structures differ.
+
+    A curve is one number here: fifty values of it would hide what is odd among tests of chance.
+    """
     model = without_force(model)  # a force is of its day
     table = model.table
     single = [row for row in table.rows if row.at is None and row.std > 0.0]
-    return tuple(
-        Row(p.name, p.unit, p.value, p.std, p.prior_std, p.identifiable)
-        for p in (*single, *curve_gains(table, model.content.range))
+    return (
+        *(
+            Row(p.name, p.unit, p.value, p.std, p.prior_std, p.identifiable)
+            for p in (*single, *curve_gains(table, model.content.range))
+        ),
+        *(Row(name, "s", *risen, math.nan, known(*risen)) for name, risen in rise_times(model).items()),
     )

@@ -15,7 +15,7 @@ from slipwise.models.parameter_table import PhysicalParameter, physical_paramete
 from slipwise.models.schema import AxisShares
 from slipwise.models.share_words import AXES, axis_shares
 from slipwise.models.slip_words import Gain, slip_gains
-from slipwise.models.step_response import StepResponse, step_responses
+from slipwise.models.step_response import rise_times
 
 #: Standard deviations of a difference from which on two models differ.
 DIFFERENT = 3.0
@@ -123,22 +123,12 @@ def _gains(model: Model) -> list[tuple[str, Gain | None]]:
 
 
 def _step_rows(first: Model, second: Model) -> list[Difference]:
-    """How long 63 % of a step take, by delay and lags together; by the same clock alone."""
-    if first.content.input != "command" or first.car is not None:
-        return []
+    """How late each is in all; by the same clock alone."""
     if first.content.clock_offset != second.content.clock_offset:
         return []
-    turn = "yaw rate" if first.content.wheelbase is None else "steering"
-    steps = ([_risen(step) for step in step_responses(model)] for model in (first, second))
-    return [
-        Difference(f"63 % of a step of {name}", "s", one, other)
-        for name, one, other in zip(("speed", turn), *steps, strict=True)
-    ]
-
-
-def _risen(step: StepResponse) -> tuple[float, float] | None:
-    """Seconds and standard deviation; None where it is never there, or where there is nothing to learn."""
-    return step.risen if math.isfinite(step.risen[0]) and step.risen[1] > 0.0 else None
+    ours, theirs = rise_times(first), rise_times(second)
+    names = dict.fromkeys((*ours, *theirs))
+    return [Difference(name, "s", ours.get(name), theirs.get(name)) for name in names]
 
 
 def _share_rows(first: Model, second: Model) -> list[Difference]:

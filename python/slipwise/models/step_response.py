@@ -45,6 +45,22 @@ def step_responses(model: Model) -> tuple[StepResponse, StepResponse]:
     return speed, turn
 
 
+def rise_times(model: Model) -> dict[str, tuple[float, float]]:
+    """Return how long 63 % of a step take, by delay and lags together, and its standard deviation [s].
+
+    These compare where drives are described otherwise. There are none of wheels, of a car that is commanded
+    by throttle and steering, or where it was not learned.
+    """
+    if model.content.input != "command" or model.car is not None:
+        return {}
+    turn = "yaw rate" if model.content.wheelbase is None else "steering"
+    found = {
+        f"63 % of a step of {name}": step.risen
+        for name, step in zip(("speed", turn), step_responses(model), strict=True)
+    }
+    return {name: risen for name, risen in found.items() if np.isfinite(risen[0]) and risen[1] > 0.0}
+
+
 def _numbers(model: Model, parameters: Floats) -> Floats:
     """Seconds to 63 % of speed and yaw rate, and what of both has arrived soon, [4]."""
     actuator = model.motion.actuator(parameters)

@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from contradictory_logs import sound_log, turned
 
 from slipwise.calibration import Settings
 from slipwise.fleet import LogTask, learn_task
@@ -42,6 +45,24 @@ def test_log_that_cannot_be_read_says_why(tmp_path: Path) -> None:
     learned = learn_task(LogTask(str(path), "one", "", log_hash(path)))
     assert learned.rows == ()
     assert str(path) in learned.failure
+
+
+def test_log_whose_poses_and_inputs_contradict_each_other_says_so(tmp_path: Path) -> None:
+    """A sensor that is turned by 90 degrees showed a robot that drives 0 % and turns as all others do."""
+    path = tmp_path / "turned.csv"
+    save_log(turned(sound_log(), math.pi / 2.0), path)
+    learned = learn_task(LogTask(str(path), "one", "", log_hash(path)))
+    assert learned.rows == ()
+    assert "their heading is turned by 90 deg" in learned.failure
+
+
+def test_log_says_how_late_its_robot_is_in_all(tmp_path: Path) -> None:
+    path = tmp_path / "sound.csv"
+    save_log(replace(sound_log(), runs=tuple(replace(r, wheels=None) for r in sound_log().runs)), path)
+    rows = {row.parameter: row for row in learn_task(LogTask(str(path), "one", "", log_hash(path))).rows}
+    late = rows["63 % of a step of speed"]
+    assert late.value == pytest.approx(0.2, abs=3.0 * late.std)
+    assert 0.0 < late.std < 0.05
 
 
 def test_other_settings_are_another_key(tmp_path: Path) -> None:
