@@ -10,8 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-BOTH = "commands and wheel speeds"
-WORDS = {"wheel": "wheel speeds", "command": "commands alone"}
+from slipwise.models.slip_words import AS_COMMANDED
+from slipwise.models.summary import SIGNIFICANT
+
+WHEELS, COMMANDS, ALONE, BOTH = "wheel speeds", "commands", "commands alone", "commands and wheel speeds"
+GAINS = ("gain_v", "gain_omega")  # of drives that wheel speeds told apart
 
 Columns = Mapping[str, NDArray[Any]]
 
@@ -19,19 +22,26 @@ Columns = Mapping[str, NDArray[Any]]
 def by_kind(columns: Columns) -> dict[str, NDArray[Any]]:
     """Return the columns with what each log was learned from, by which parameters are told apart.
 
-    What commands alone tell of slip includes the gain of the drive, which wheel speeds tell apart, and a
-    delay to the poses includes how late these are stamped. Parameters of the logs whose kind is not that of
+    What commands alone tell of slip includes the gain of the drive, which wheel speeds tell apart; where
+    all gains that they told are one, it is the same slip. Parameters of the logs whose kind is not that of
     most are named with it.
 
     Args:
-        columns: key, input and parameter of each row [N].
+        columns: key, input, parameter, value and std of each row [N].
     """
-    rows = list(zip(columns["key"], columns["input"], columns["parameter"], strict=True))
-    gained = {key for key, _, name in rows if name in ("gain_v", "gain_omega")}
-    kinds = [BOTH if key in gained and of == "command" else WORDS.get(of, of) for key, of, _ in rows]
+    gains = np.isin(columns["parameter"], GAINS)
+    gained = set(columns["key"][gains])
+    off = np.abs(columns["value"][gains].astype(float) - 1.0)
+    known_off = off > np.maximum(AS_COMMANDED, SIGNIFICANT * columns["std"][gains].astype(float))
+    alone, both = (ALONE, BOTH) if known_off.any() else (COMMANDS, COMMANDS)
+    kinds = [
+        WHEELS if of == "wheel" else both if key in gained else alone
+        for key, of in zip(columns["key"], columns["input"], strict=True)
+    ]
     usual = Counter(dict(zip(columns["key"], kinds, strict=True)).values()).most_common(1)[0][0]
     named = [
-        name if kind == usual else f"{name} ({kind})" for (_, _, name), kind in zip(rows, kinds, strict=True)
+        name if kind == usual else f"{name} ({kind})"
+        for name, kind in zip(columns["parameter"], kinds, strict=True)
     ]
     return dict(columns) | {
         "input": np.array(kinds, dtype=object),
