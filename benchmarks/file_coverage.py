@@ -19,8 +19,6 @@ from slipwise.calibration.prepared_run import collect_windows, prepare_run
 from slipwise.errors import SlipwiseError
 from slipwise.logs import Inputs, Log, Poses, Run, open_log
 from slipwise.models import Model
-from slipwise.prediction import student_at
-from slipwise.student import fraction_inside
 
 Floats = NDArray[np.float64]
 
@@ -71,22 +69,22 @@ def _inputs(part: Inputs | None, begin: float, end: float) -> Inputs | None:
 
 def _cut(part: PartT, begin: float, end: float) -> PartT:
     kept = (part.t >= begin) & (part.t < end)
-    return replace(part, **{name: value[kept] for name, value in vars(part).items() if value is not None})
+    return replace(
+        part, **{name: value[kept] for name, value in vars(part).items() if isinstance(value, np.ndarray)}
+    )
 
 
 def coverage(model: Model, log: Log) -> list[Coverage]:
     """Return how the second half lies in the ellipsoids that the file states, tails of the file included."""
     drive = prepare_run(log, model.content.input)
-    predictor = model_predictor(model, drive)
+    predictor = model_predictor(model)
     sets = [collect_windows(drive, horizon, Settings().rules()) for horizon in HORIZONS]
     judged = [predictions_of(predictor, targets, targets) for targets in sets if len(targets) >= FEWEST]
-    return [_coverage(model, predictions) for predictions in judged]
+    return [_coverage(predictions) for predictions in judged]
 
 
-def _coverage(model: Model, predictions: Predictions) -> Coverage:
-    tail = student_at(model, predictions.horizon)
-    inside = fraction_inside(predictions.reported_nis / tail.inflation, np.full(len(predictions), tail.dof))
-    fractions = tuple(float(np.mean(inside <= fraction)) for fraction in FRACTIONS)
+def _coverage(predictions: Predictions) -> Coverage:
+    fractions = tuple(float(np.mean(predictions.inside <= fraction)) for fraction in FRACTIONS)
     return Coverage(predictions.horizon, len(predictions), fractions)
 
 

@@ -20,6 +20,11 @@ def export_command(model: Path) -> str:
     return f"slipwise export {quote(str(model))} --to all -o config"
 
 
+def compare_command(model: Path) -> str:
+    """Return the command that says what differs between a model and one that is learned again."""
+    return f"slipwise compare {quote(str(model))} NEW.yaml"
+
+
 def verdict_label(verdict: Verdict | VerdictSection) -> tuple[str, str]:
     """Return what a verdict says in a few words, and its colour."""
     if verdict.good and verdict.reservations:

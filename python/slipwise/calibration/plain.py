@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from slipwise import _core
@@ -11,6 +13,7 @@ from slipwise.calibration.predictors import Predictor
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 from slipwise.models.model import Model
+from slipwise.prediction import student_at
 
 
 def baseline_predictor(settings: Settings) -> Predictor:
@@ -35,7 +38,7 @@ def vendor_predictor(multiplier: float, settings: Settings) -> Predictor:
 
 
 def model_predictor(model: Model) -> Predictor:
-    """`model`: a model file as it is; what the slip disturbance is now is not asked for."""
+    """`model`: a model file as it is, tails included; what the slip disturbance is now is not asked for."""
     posterior = Posterior(
         model.motion,
         model.mean,
@@ -48,7 +51,8 @@ def model_predictor(model: Model) -> Predictor:
         limits=model.limits,
         car=model.car,
     )
-    return Predictor("model", model.noise, lambda _: posterior, model.content.dynamics)
+    dynamics, student = model.content.dynamics, partial(student_at, model)
+    return Predictor("model", model.noise, lambda _: posterior, dynamics, student=student)
 
 
 def _fixed(method: str, model: _core.MotionModel, mean: np.ndarray, settings: Settings) -> Predictor:

@@ -31,6 +31,7 @@ class Predictor:
     posterior: Callable[[int], Posterior]  # requested in the order learned: windows never decrease
     starts_from_wheels: bool  # the actuator's measured twist at the start is used
     causal: bool = True  # False: it learned from the whole log, the windows to predict included
+    student: Callable[[float], StudentT] | None = None  # of a horizon [s]; without it, from earlier errors
 
 
 def learned_counts(learned: WindowSet, targets: WindowSet, embargo: float | None = None) -> tuple[Ints, Ints]:
@@ -137,7 +138,8 @@ def _predict_in_sample(posterior: Posterior, draft: _Draft, i: int) -> None:
 def _finished(predictor: Predictor, learned: WindowSet, draft: _Draft) -> Predictions:
     targets, known = draft.targets, known_windows(draft.targets, draft.embargo)
     until = _learned_until(predictor, ((learned, draft.counts), (targets, known)), targets)
-    proposed = ProposedPoses(draft.pose, draft.covariance, draft.in_sample, draft.structure)
+    student = None if predictor.student is None else predictor.student(targets.length)
+    proposed = ProposedPoses(draft.pose, draft.covariance, draft.in_sample, draft.structure, student)
     return scored_predictions(predictor.method, targets, proposed, until, known)
 
 
@@ -149,6 +151,7 @@ class ProposedPoses:
     covariance: Floats  # [N, 3, 3] without the correction by earlier errors
     in_sample: Floats  # [N, 3] pose after learning the window
     structure: Ints  # of STRUCTURES
+    student: StudentT | None = None  # tails that the method states; without them, those of earlier errors
 
 
 def known_windows(targets: WindowSet, embargo: float | None = None) -> Ints:
@@ -168,7 +171,11 @@ def scored_predictions(
     `known` is how many earlier errors those are; without it, those one horizon before.
     """
     squared = normalised_squared(residual(targets.measured, proposed.pose), proposed.covariance)
-    students = _tails(known_windows(targets) if known is None else known, squared)
+    students: Sequence[StudentT | _core.StudentT]
+    if proposed.student is not None:
+        students = [proposed.student] * len(squared)
+    else:
+        students = _tails(known_windows(targets) if known is None else known, squared)
     inflation = np.array([tail.inflation for tail in students])
     left = residual(targets.measured, proposed.in_sample)
     return Predictions(

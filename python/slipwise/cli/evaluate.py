@@ -185,10 +185,13 @@ def _options(
 
 def _next_step(evaluation: Evaluation, verdict: Verdict | None, models: Sequence[Path]) -> tuple[str, ...]:
     """What to do with a model file that was judged on a log it had not learned from."""
-    from slipwise.calibration.next_step import after_checking
+    from slipwise.calibration.next_step import after_checking, compare_command
+    from slipwise.evaluation import simpler_method
 
     if verdict is None or not models:
         return ()
+    if verdict.good and simpler_method(evaluation, evaluation.models[0]) is not None:
+        return ("Next: calibrate from this log, then compare:", f"  {compare_command(models[0])}")
     causal = evaluation.score(evaluation.models[0], max(evaluation.horizons)).causal
     return after_checking(verdict, models[0]) if causal else ()
 

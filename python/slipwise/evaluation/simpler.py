@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simpler method of the same table that predicts clearly better than the one that is judged."""
+"""A simpler method of the same table, or one that learns from this log, that predicts clearly better."""
 
 from __future__ import annotations
 
@@ -27,20 +27,27 @@ class Simpler:
     heading: float  # rad
     position_ratio: Ratio  # of its errors to those of the method judged, with the 95 % interval
     heading_ratio: Ratio
+    of_file: bool = False  # the method judged is a model file, which learned from another log
 
     def advice(self) -> str:
         """Propose it."""
-        return (
-            f"{self.method}, of {_terms(self.method):.0f} slip terms, predicts clearly better: "
-            f"{self.position:.3g} m and {self.heading:.3g} rad after {self.horizon:g} s, "
-            f"{self.position_ratio[0]:.2f} and {self.heading_ratio[0]:.2f} times these errors. "
-            f"Use --basis {self.method}."
+        errors = (
+            f"predicts clearly better: {self.position:.3g} m and {self.heading:.3g} rad after "
+            f"{self.horizon:g} s, {self.position_ratio[0]:.2f} and {self.heading_ratio[0]:.2f} times these "
+            "errors."
         )
+        if self.of_file:
+            return (
+                f"What this log itself teaches ({self.method}) {errors} The robot, its load or its ground "
+                "may have changed: calibrate from this log, and compare the two models."
+            )
+        return f"{self.method}, of {_terms(self.method):.0f} slip terms, {errors} Use --basis {self.method}."
 
 
 def simpler_method(evaluation: Evaluation, judged: str) -> Simpler | None:
     """Return the best of the simpler bases that are clearly better than `judged` at the longest horizon.
 
+    Where a model file is judged, which learned from another log, any basis that learns from this one may be.
     Clearly better is a basis that is worse in neither position nor heading, better in one beyond chance, and
     by a tenth on the whole: the best of many is a little better by chance alone.
     """
@@ -48,7 +55,12 @@ def simpler_method(evaluation: Evaluation, judged: str) -> Simpler | None:
     own = next((p for p in longest if p.method == judged), None)
     if own is None:
         return None
-    others = [_beside(p, own) for p in longest if p.causal and _terms(p.method) < _terms(judged)]
+    of_file = judged in evaluation.models and own.causal
+    others = [
+        replace(_beside(p, own), of_file=of_file)
+        for p in longest
+        if p.causal and (_terms(p.method) < _terms(judged) or (of_file and p.method == "auto"))
+    ]
     better = [other for other in others if _clearly_better(other)]
     return min(better, key=lambda other: other.position_ratio[0] * other.heading_ratio[0], default=None)
 

@@ -52,6 +52,15 @@ def test_nothing_is_proposed_that_is_not_clearly_better(scales: dict[str, float]
     assert simpler_method(table(**scales), "auto") is None
 
 
+def test_of_a_model_file_that_what_this_log_teaches_is_better_says_that_the_robot_changed() -> None:
+    evaluation = replace(table(model=1.0, edd_2=0.5, auto=0.4), models=("model",))
+    found = simpler_method(evaluation, "model")
+    assert found is not None
+    assert found.advice().startswith("What this log itself teaches (auto) predicts clearly better: ")
+    assert found.advice().endswith("calibrate from this log, and compare the two models.")
+    assert simpler_method(replace(table(model=1.0, auto=0.95), models=("model",)), "model") is None
+
+
 def test_of_two_bases_only_the_one_with_fewer_terms_is_simpler() -> None:
     bases = table(edd_2=0.5, odd_even_10=1.0)
     swapped = table(edd_2=1.0, odd_even_10=0.5)
