@@ -83,7 +83,8 @@ def excite(
     lessons = lessons_of(designed)
     _write(files, designed, lessons, (topic, stamped))
     document = _document(designed, lessons, files)
-    for sentence in summary(designed, lessons):
+    in_reverse = "" if model is None else _reverse(model, designed)
+    for sentence in filter(None, (*summary(designed, lessons), in_reverse)):
         out.line(sentence)
     show_files(out, files)
     out.document(document)
@@ -135,6 +136,18 @@ def _known(
     if learned is None or not learned.vector.rows:  # the baseline predicts best
         return space, prior_knowledge(space)
     return space, knowledge_of(learned)
+
+
+def _reverse(model: Path, drive: Excitation) -> str:
+    """Say that the robot is to drive in reverse, where its model never saw it do so; else empty."""
+    from slipwise.excitation import command_inputs
+    from slipwise.models import load_model
+    from slipwise.number_text import number_text
+
+    slowest = float(command_inputs(drive).v.min())
+    if slowest >= 0.0 or load_model(model).content.range.speed[0] < 0.0:
+        return ""
+    return f"It drives in reverse, down to {number_text(slowest)} m/s, which the model has never seen."
 
 
 def _sideways_limit(model: Model) -> float:

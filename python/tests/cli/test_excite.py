@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -40,6 +41,14 @@ def test_model_says_what_is_known_and_the_limits(slipwise: Slipwise, folder: Pat
     assert (result.code, result.err) == (0, "")
     document = json.loads(result.out)
     assert document["parameters"][0] == "lon.V"
+
+
+@pytest.mark.slow
+def test_a_drive_in_reverse_that_the_model_never_saw_is_said(slipwise: Slipwise, folder: Path) -> None:
+    make_model(replace(named("edd-2", ang__w=-0.3), speed=(0.0, 1.0))).save(folder / "model.yaml")
+    result = slipwise("excite", *QUICK, "--model", "model.yaml")
+    assert result.code == 0
+    assert re.search("It drives in reverse, down to -[0-9.]+ m/s, which the model has never seen", result.out)
 
 
 def test_wrong_use_ends_with_code_2_and_says_why(
