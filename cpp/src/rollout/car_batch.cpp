@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "slipwise/actuator/first_order_lag.hpp"
@@ -20,6 +21,7 @@ namespace {
 constexpr double kLongest = 0.02;     // [s] of a step; over it the yaw rate in the drag is held
 constexpr double kStandstill = 0.05;  // [m/s] below which a yaw rate tells nothing of the steering
 constexpr int kHalvings = 40;
+constexpr double kLongestDelay = 60.0;  // [s]
 
 std::size_t steps_of(double period) {
   return static_cast<std::size_t>(std::max(1.0, std::ceil(period / kLongest - 1e-9)));
@@ -180,6 +182,10 @@ CarBatch<Scalar> car_batch(const CarCurves& car, const RolloutBatch<Scalar>& bat
   check_batch(batch);
   if (!(period > 0.0) || batch.commands.vy != nullptr) {
     throw std::invalid_argument("a car's rollouts need throttle and steering, and a positive period");
+  }
+  if (!(car.delay >= 0.0 && car.delay <= kLongestDelay)) {
+    throw std::invalid_argument("a car's delay must be between 0 and " + std::to_string(kLongestDelay) + " s, got " +
+                                std::to_string(car.delay));
   }
   const std::size_t starts = batch.starts.size(), size = batch.rollouts * batch.periods;
   CarBatch<Scalar> result{std::vector<Scalar>(size), std::vector<Scalar>(size), {}};
