@@ -20,7 +20,7 @@ from sample_slopes import GRAVITY, Hills, hilly_log
 
 import slipwise
 from slipwise.calibration import Settings, calibrate, make_settings
-from slipwise.calibration.calibrate import JUDGING_HORIZONS, calibrate_by, learned_by
+from slipwise.calibration.calibrate import JUDGING_HORIZONS, calibrate_by
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.prepared_run import WindowSet, prepare_run
@@ -122,7 +122,7 @@ def without_limits(log: Log) -> Model:
     settings = for_the_ground_of(log, Settings())
 
     def learn(windows: WindowSet) -> Learned:
-        return learned_by(learn_log(windows.drive, settings, JUDGING_HORIZONS))
+        return learn_log(windows.drive, settings, JUDGING_HORIZONS)
 
     return calibrate_by(learn, log, "command", settings).model
 

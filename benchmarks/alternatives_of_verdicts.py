@@ -15,7 +15,6 @@ from slipwise.calibration.calibrate import (
     JUDGING_HORIZONS,
     found_contradictions,
     judged_content,
-    learned_by,
     learning_windows,
     refuse_empty,
 )
@@ -71,7 +70,7 @@ def good(log: Log) -> tuple[bool, bool]:
     try:
         windows = learning_windows(prepare_run(log, "wheel"), "wheel", settings)
         refuse_empty(windows, log)
-        learned = learned_by(learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=Keep(SEPARATION)))
+        learned = learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=Keep(SEPARATION))
         found = found_contradictions(learned, windows.drive, given)
         judged = [judged_content(learned, windows, given, each)[0].verdict.good for each in (found, ())]
     except SlipwiseError:

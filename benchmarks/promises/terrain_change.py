@@ -25,7 +25,8 @@ if __name__ == "__main__":  # run by its path as well as imported from the root
 import numpy as np
 from benchmarks.promises.disturbed_robot import Disturbance, Robot, TerrainChange, disturbed_run
 
-from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
+from slipwise.calibration.learned import Learned
+from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log
@@ -91,7 +92,7 @@ def judge(job: Job) -> Found:
     )
 
 
-def _learned(robot: Robot, job: Job, at: float, settings: Settings) -> LearnedLog:
+def _learned(robot: Robot, job: Job, at: float, settings: Settings) -> Learned:
     change = TerrainChange(at, job.factor)
     log = disturbed_run(robot, MINUTES, seed=job.seed, change=change).log
     if job.input == "command":
@@ -99,12 +100,12 @@ def _learned(robot: Robot, job: Job, at: float, settings: Settings) -> LearnedLo
     return learn_log(prepare_run(log, job.input), settings, (HORIZON,), keep=Keep(settings.wheel_separation))
 
 
-def _alarms(learned: LearnedLog) -> np.ndarray:
+def _alarms(learned: Learned) -> np.ndarray:
     history = learned.history
     return np.empty(0) if history is None else history.t[history.alarm]
 
 
-def _heading(learned: LearnedLog, first: float, last: float) -> float:
+def _heading(learned: Learned, first: float, last: float) -> float:
     predictions = learned.predictions[0]
     judged = (predictions.t_start >= first) & (predictions.t_start <= last)
     return float(predictions.heading_error[judged].mean())

@@ -13,13 +13,13 @@ from slipwise.calibration.gyro_clock import gyro_clock
 from slipwise.calibration.judge import Judged, Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement, too_short
 from slipwise.calibration.learned import Learned
-from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
+from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.mounts import mounts_of
 from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.position_settings import for_positions
-from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of, student_of
+from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of
 from slipwise.calibration.prepared_run import (
     PreparedRun,
     WindowSet,
@@ -205,30 +205,7 @@ def judged_content(
 def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:
     """Learn in one pass, which also makes the predictions that are judged."""
     keep = Keep(settings.wheel_separation)
-    return learned_by(learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep, progress=progress))
-
-
-def learned_by(learned: LearnedLog) -> Learned:
-    """Return what a pass of the learner over a log gives to judge."""
-    students = {
-        p.horizon: student_of(student)
-        for p, student in zip(learned.predictions, learned.students, strict=True)
-        if len(p)
-    }
-    return Learned(
-        learned.kept,
-        learned.slip,
-        learned.predictions,
-        learned.baseline,
-        students,
-        learned.history,
-        learned.bases,
-        learned.limits,
-        learned.car,
-        learned.sources,
-        learned.body,
-        learned.evidence,
-    )
+    return learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep, progress=progress)
 
 
 def _by_estimator(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:

@@ -10,7 +10,6 @@ from slipwise.calibration.calibrate import (
     JUDGING_HORIZONS,
     found_contradictions,
     judged_content,
-    learned_by,
     learning_windows,
     model_of,
     refuse_empty,
@@ -81,8 +80,8 @@ def calibrate_sequence(
     sequence = learn_sequence(
         drives, settings, JUDGING_HORIZONS, options=replace(options, keep=keep), progress=progress
     )
-    assert sequence.learned is not None  # it was asked to be kept
-    learned = learned_by(sequence.learned)
+    learned = sequence.learned
+    assert learned is not None  # it was asked to be kept
     found = found_contradictions(learned, windows.drive, (log, input_name, settings), start)
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     kept = learned.kept.structure, learned.kept.motion

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.calibration.calibrate import JUDGING_HORIZONS, calibrate, calibrate_by, learned_by
+from slipwise.calibration.calibrate import JUDGING_HORIZONS, calibrate, calibrate_by
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import Keep, learn_with, new_learner
 from slipwise.calibration.learner import STRUCTURES, Progress
@@ -110,7 +110,7 @@ def _learned(
         if begin is not None:
             begin_from(learner, begin[0], input_name, wheels=has_wheels(windows.drive), where=begin[1])
         keep = Keep(settings.wheel_separation)
-        return learned_by(learn_with(learner, windows.drive, JUDGING_HORIZONS, keep=keep, progress=progress))
+        return learn_with(learner, windows.drive, JUDGING_HORIZONS, keep=keep, progress=progress)
 
     calibration = calibrate_by(learn, log, input_name, settings)
     return calibration, knowledge_of(learner, input_name, settings)

@@ -12,41 +12,22 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.calibration.coming import coming_of_runs
 from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import LIMITS, STRUCTURES, Posterior, Progress, posterior_of
 from slipwise.calibration.measured_body import measured_body
 from slipwise.calibration.predictions import Predictions, residual
+from slipwise.calibration.predictors import student_of
 from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_course import course_of
 from slipwise.logs.log import Run
-from slipwise.models.schema import MeasuredBody
 from slipwise.segments import car_prior, recording_of, source_names, wheelbase_of
 
 Floats = NDArray[np.float64]
 
 STEPS = 20  # pieces in which a run is pushed, so that progress can be shown
-
-
-@dataclass(frozen=True, eq=False)
-class LearnedLog:
-    """What a learner made of a log."""
-
-    kept: Posterior  # what goes into a model
-    slip: Posterior  # the same; of the next best where the baseline is kept, which has no parameters
-    students: tuple[_core.StudentT, ...]  # of the predictions of each horizon, nothing recent being known
-    predictions: tuple[Predictions, ...]  # one for each horizon
-    baseline: tuple[Predictions, ...]  # the kinematic baseline's, of the same segments
-    history: History | None
-    bases: tuple[str, ...]
-    segments: int
-    seconds: float  # of all segments learned
-    limits: _core.LimitSearch | None = None  # what was found of the actuator's limits, where it was asked
-    car: _core.CarCurves | None = None  # where commands are throttle and steering
-    sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
-    body: MeasuredBody | None = None  # what the poses show of its rates
-    evidence: _core.MotionEvidence | None = None  # of contradictions
 
 
 @dataclass(frozen=True)
@@ -64,7 +45,7 @@ def learn_log(  # noqa: PLR0913 - six things, each of its own sort
     keep: Keep | None = None,
     embargo: float | None = None,
     progress: Progress | None = None,
-) -> LearnedLog:
+) -> Learned:
     """Push runs through a learner in one pass.
 
     Args:
@@ -128,7 +109,7 @@ def learn_with(
     *,
     keep: Keep | None = None,
     progress: Progress | None = None,
-) -> LearnedLog:
+) -> Learned:
     """Push runs through a learner that is there already; else as `learn_log`."""
     events: list[_core.LearnerEvent] = []
     for done in pushed(learner, drive):
@@ -144,7 +125,7 @@ def learned_of(
     horizons: Sequence[float],
     drive: tuple[PreparedRun, ...],
     keep: Keep | None,
-) -> LearnedLog:
+) -> Learned:
     """Return what a learner made of all that was pushed.
 
     Args:
@@ -155,26 +136,51 @@ def learned_of(
         keep: what is needed beside predictions.
     """
     model = learner.model()
-    hypotheses = learner.settings.hypotheses
-    bases = tuple(basis.name for basis in hypotheses.bases)
-    predictions, baseline = held_out_predictions(model, horizons, drive)
-    found = None if keep is None else found_limits(learner, model, keep.wheel_separation)
-    history = None
-    if keep is not None:
-        history = _history(events, model.motion, bases, drive, several=hypotheses.several)
-    return LearnedLog(
-        kept=kept_posterior(model, found),
-        slip=posterior_of(model.slip, model.disturbance),
-        students=tuple(model.students),
+    learned = learned_now(
+        learner,
+        model,
+        None if keep is None else found_limits(learner, model, keep.wheel_separation),
+        held_out_predictions(model, horizons, drive),
+        learned_sources(learner, source_names(run.run for run in drive)),
+    )
+    if keep is None:
+        return learned
+    several = learner.settings.hypotheses.several
+    return replace(learned, history=_history(events, model.motion, learned.bases, drive, several=several))
+
+
+def learned_now(
+    learner: _core.MotionLearner,
+    model: _core.LearnedModel,
+    found: _core.ActuatorLimits | None,
+    held_out: tuple[tuple[Predictions, ...], tuple[Predictions, ...]],
+    sources: tuple[LearnedSource, ...],
+) -> Learned:
+    """Return what a learner has learned, without a history.
+
+    Args:
+        learner: which has learned it.
+        model: its.
+        found: of limits of the actuator, where these were looked for.
+        held_out: predictions of the model and of the baseline, see `held_out_predictions`.
+        sources: of poses, where there are several.
+    """
+    predictions, baseline = held_out
+    return Learned(
+        kept=_kept_posterior(model, found),
+        identifiable=posterior_of(model.slip, model.disturbance),
         predictions=predictions,
         baseline=baseline,
-        history=history,
-        bases=bases,
-        segments=model.segments,
-        seconds=model.seconds,
+        students={
+            each.horizon: student_of(student)
+            for each, student in zip(predictions, model.students, strict=True)
+            if len(each)
+        },
+        history=None,
+        bases=tuple(basis.name for basis in learner.settings.hypotheses.bases),
         limits=None if found is None else found.search,
         car=model.car,
-        sources=learned_sources(learner, source_names(run.run for run in drive)),
+        sources=sources,
         body=measured_body(model),
         evidence=model.evidence,
     )
@@ -187,7 +193,7 @@ def found_limits(
     return None if model.car is not None else learner.find_limits(wheel_separation)
 
 
-def kept_posterior(model: _core.LearnedModel, found: _core.ActuatorLimits | None) -> Posterior:
+def _kept_posterior(model: _core.LearnedModel, found: _core.ActuatorLimits | None) -> Posterior:
     """Return what goes into a model: behind limits of the actuator, where these were found and kept."""
     motion = (found.posterior if found is not None else None) or model.motion
     kept = posterior_of(motion, model.disturbance)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from functools import partial
 
 from slipwise import _core
+from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import (
     LEARNED,
     Cue,
     Keep,
-    LearnedLog,
     learned_of,
     new_learner,
     predictions_of,
@@ -81,7 +81,7 @@ class LearnedSequence:
     surfaces: tuple[SurfaceSummary, ...]
     labels: tuple[float, float]  # labels that were judged, and how many were right
     learner: _core.MotionLearner
-    learned: LearnedLog | None = None  # of all logs together, where it was asked
+    learned: Learned | None = None  # of all logs together, where it was asked
 
 
 @dataclass(frozen=True)

@@ -16,16 +16,13 @@ from slipwise.calibration.core_settings import NOTHING_PARTICULAR, car_of, core_
 from slipwise.calibration.judge import Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned import Learned
-from slipwise.calibration.learned_log import found_limits, held_out_predictions, kept_posterior
-from slipwise.calibration.learner import posterior_of
+from slipwise.calibration.learned_log import found_limits, held_out_predictions, learned_now
 from slipwise.calibration.learner_answers import Event, event_of
-from slipwise.calibration.measured_body import measured_body
 from slipwise.calibration.measurements import Measurements
 from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.path_ahead import PathAhead
 from slipwise.calibration.position_settings import for_positions
-from slipwise.calibration.predictors import student_of
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
 from slipwise.calibration.sideways_seen import SidewaysSeen
@@ -296,21 +293,8 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         separation = self._settings.wheel_separation
         found = found_limits(self._core, model, separation) if limits else None
         self._limits = found if limits else self._limits
-        predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
-        return Learned(
-            kept_posterior(model, found),
-            posterior_of(model.slip, model.disturbance),
-            predictions,
-            baseline,
-            {p.horizon: student_of(s) for p, s in zip(predictions, model.students, strict=True) if len(p)},
-            None,
-            tuple(basis.name for basis in self._settings.bases()),
-            None if found is None else found.search,
-            model.car,
-            self.sources,
-            measured_body(model),
-            model.evidence,
-        )
+        held_out = held_out_predictions(model, JUDGING_HORIZONS)
+        return learned_now(self._core, model, found, held_out, self.sources)
 
     def save(self) -> bytes:
         """Return all of it as bytes, from which `load` makes a learner that goes on to the same results."""

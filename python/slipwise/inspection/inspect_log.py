@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from slipwise.calibration import Settings
-from slipwise.calibration.learned_log import LearnedLog
+from slipwise.calibration.learned import Learned
 from slipwise.calibration.prepared_run import choose_input
 from slipwise.calibration.settings import AVERAGE
 from slipwise.calibration.sloping_ground import for_the_ground_of
@@ -34,7 +34,7 @@ class Inspection:
     found: tuple[Finding, ...] = ()  # all that is wrong in it
     surveys: tuple[Survey, ...] = ()  # of each file: its topics or columns, and what they are used as
     problem: str = ""  # why the files make no log as they are; then the rest is empty
-    kept: LearnedLog | None = None  # what a model of the log is made of, where it was asked for
+    kept: Learned | None = None  # what a model of the log is made of, where it was asked for
 
 
 def inspect_files(
@@ -78,7 +78,7 @@ def inspect_log(log: Log, settings: Settings | None = None, *, keep: bool = Fals
             `next_drive` need not learn it again.
     """
     settings = settings or Settings()
-    kept: dict[str, LearnedLog] = {}
+    kept: dict[str, Learned] = {}
     chosen = choose_input(log) if keep and _as_calibrate(log, settings) else None
     inputs = {
         "command": [run.commands for run in log.runs if run.commands is not None],

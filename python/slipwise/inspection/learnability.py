@@ -10,7 +10,8 @@ import numpy as np
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, learning_windows, refuse_empty
 from slipwise.calibration.identifiability import drives_for
-from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
+from slipwise.calibration.learned import Learned
+from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.calibration.verdict import POSITIONS_ONLY
@@ -57,7 +58,7 @@ class Learnability:
 
 
 def learnability_of(
-    log: Log, input_name: str, settings: Settings, kept: dict[str, LearnedLog] | None = None
+    log: Log, input_name: str, settings: Settings, kept: dict[str, Learned] | None = None
 ) -> Learnability:
     """Learn as `calibrate` does and say what is determined; nothing to learn is no error.
 
@@ -73,9 +74,7 @@ def learnability_of(
     return replace(_learned(log, input_name, settings, kept), contradictions=found)
 
 
-def _learned(
-    log: Log, input_name: str, settings: Settings, kept: dict[str, LearnedLog] | None
-) -> Learnability:
+def _learned(log: Log, input_name: str, settings: Settings, kept: dict[str, Learned] | None) -> Learnability:
     try:
         windows = learning_windows(prepare_run(log, input_name), input_name, settings)
         refuse_empty(windows, log)
@@ -83,11 +82,11 @@ def _learned(
         reason = f"{nothing.what}{f': {nothing.advice}' if nothing.advice else ''}"
         return Learnability(input_name, 0, 0.0, (), (), reason, ())
     if kept is None:
-        posterior = learn_log(windows.drive, settings, ()).slip
+        posterior = learn_log(windows.drive, settings, ()).identifiable
     else:
         keep = Keep(settings.wheel_separation)
         kept[input_name] = learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep)
-        posterior = kept[input_name].slip
+        posterior = kept[input_name].identifiable
     parameters = tuple(
         _parameter((info.name, info.unit), posterior, i) for i, info in enumerate(posterior.motion.parameters)
     )

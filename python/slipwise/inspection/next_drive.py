@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from slipwise.calibration import Settings, calibrate
-from slipwise.calibration.calibrate import calibrate_by, learned_by
-from slipwise.calibration.learned_log import LearnedLog
+from slipwise.calibration.calibrate import calibrate_by
+from slipwise.calibration.learned import Learned
 from slipwise.calibration.prepared_run import choose_input
 from slipwise.errors import SettingsError
 from slipwise.excitation import (
@@ -28,7 +28,7 @@ def next_drive(
     settings: Settings | None = None,
     *,
     progress: Callable[[float], None] | None = None,
-    kept: LearnedLog | None = None,
+    kept: Learned | None = None,
 ) -> Excitation:
     """Return the drive after which the worst prediction is surest, given what this log has taught.
 
@@ -49,7 +49,7 @@ def next_drive(
     if kept is None:
         model = calibrate(log, settings=settings).model
     else:
-        model = calibrate_by(lambda _: learned_by(kept), log, choose_input(log), settings or Settings()).model
+        model = calibrate_by(lambda _: kept, log, choose_input(log), settings or Settings()).model
     try:
         limits = limits_of(model)
     except SettingsError as problem:
