@@ -115,10 +115,7 @@ def every_other(run: Run, seed: int) -> tuple[Poses, Poses]:
     """Return every other pose as it is, and the rest as a poorer source would see it."""
     random = np.random.default_rng(seed)
     p = level(run.poses)
-    parts = [
-        Poses(t=p.t[k::2], x=p.x[k::2], y=p.y[k::2], yaw=p.yaw[k::2], frame=p.frame[k::2]) for k in (0, 1)
-    ]
-    return parts[0], sources.seen_by(parts[1], SECOND, random)
+    return p.select(slice(0, None, 2)), sources.seen_by(p.select(slice(1, None, 2)), SECOND, random)
 
 
 def _of_sources(

@@ -143,17 +143,9 @@ def with_poses(run: Run, poses: Poses) -> Run:
     return replace(run, poses=poses)
 
 
-def kept(poses: Poses, keep: NDArray[np.bool_]) -> Poses:
-    """Return the poses where `keep` is true."""
-    others = {name: column[keep] for name, column in poses.optional().items() if column is not None}
-    x, y, yaw, frame = (column[keep] for column in (poses.x, poses.y, poses.yaw, poses.frame))
-    return Poses(t=poses.t[keep], x=x, y=y, yaw=yaw, frame=frame, **others)
-
-
 def inputs_until(inputs: Inputs, t: float) -> Inputs:
     """Return the inputs stamped at `t` [s] or before."""
-    keep = inputs.t <= t
-    return Inputs(t=inputs.t[keep], v=inputs.v[keep], vy=inputs.vy[keep], omega=inputs.omega[keep])
+    return inputs.select(inputs.t <= t)
 
 
 def _through_chain(u: Floats, drive: Drive) -> tuple[Floats, Floats]:

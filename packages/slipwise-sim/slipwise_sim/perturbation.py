@@ -98,7 +98,7 @@ def perturbed_truth(
 def _held(commands: Inputs, knots: Floats) -> Floats:
     """The twists (V, 0, omega) held from each knot on, [N, 3]; zero before the first command."""
     at = np.searchsorted(commands.t, knots + _LEFT_OUT, side="right") - 1
-    columns = np.column_stack((commands.v, commands.vy, commands.omega))
+    columns = commands.twists()
     return np.where((at >= 0)[:, None], columns[np.maximum(at, 0)], 0.0)
 
 

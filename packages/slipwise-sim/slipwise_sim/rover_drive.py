@@ -103,7 +103,7 @@ def joint_targets(rover: Rover, commands: Inputs) -> Floats:
     """Return the angles [rad] of steered wheels and the speeds [rad/s] of all, [N, joints]."""
     layout = rover.description().layout
     assert layout is not None
-    speed, steering = layout.wheels_for(np.column_stack((commands.v, commands.vy, commands.omega)))
+    speed, steering = layout.wheels_for(commands.twists())
     steered = [wheel.steered for wheel in layout.wheels]
     return np.column_stack((steering[:, steered], speed))
 

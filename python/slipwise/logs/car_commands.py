@@ -54,15 +54,13 @@ def beyond_words(throttle: float, steering: float) -> str:
 
 def _recording(run: Run, where: str) -> _core.Recording:
     none = np.empty((0, 4))
-    given, poses = run.commands, run.poses
+    given = run.commands
     if given is None:
         commands = none
     else:
         beyond = beyond_words(float(np.abs(given.v).max()), float(np.abs(given.omega).max()))
         if beyond:
             raise LogError(beyond, where=where, advice="--command-scale divides it")
-        commands = np.column_stack((given.t, given.v, given.vy, given.omega))
+        commands = given.rows()
     # The direction of the path looks ahead; where there is no heading, the core takes courses of its own.
-    yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
-    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame.astype(np.float64)))
-    return _core.Recording(commands, none, np.empty((0, 3)), measured)
+    return _core.Recording(commands, none, np.empty((0, 3)), run.poses.rows())

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from slipwise.logs.log import Floats, Inputs
+from slipwise.logs.log import Floats, Inputs, Ints
 
 UNKNOWN_AFTER = 0.5  # [s] an input is unknown once it is older than this, unless a setting says otherwise
 
@@ -15,6 +15,20 @@ UNKNOWN_AFTER = 0.5  # [s] an input is unknown once it is older than this, unles
 def held_for(inputs: Inputs, unknown_after: float) -> Floats:
     """Return how long each input was held and known, [N] s; the last one for no time."""
     return np.minimum(np.diff(inputs.t, append=inputs.t[-1]), unknown_after)
+
+
+def rests(inputs: Inputs, below: float, unknown_after: float) -> tuple[Ints, Ints]:
+    """Return the places of the first and the last sample of each time in which all are below a size.
+
+    Args:
+        inputs: commands, or speeds of wheels.
+        below: that size [m/s or rad/s].
+        unknown_after: between samples that are further apart [s] a time ends.
+    """
+    still = np.abs(inputs.twists()).max(axis=1) < below
+    same = still[1:] & still[:-1] & (np.diff(inputs.t) <= unknown_after)
+    first = np.flatnonzero(still & np.concatenate(([True], ~same)))
+    return first, np.flatnonzero(still & np.concatenate((~same, [True])))
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,33 @@ OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw", "fix")
 
 
 @dataclass(frozen=True, eq=False)
-class CarCommands:
+class _Columns:
+    """Columns of one length."""
+
+    def select(self, rows: Bools | Ints | slice) -> Self:
+        """Return the rows where `rows` is true, or at these places."""
+        columns = {each.name: getattr(self, each.name) for each in fields(self) if each.init}
+        chosen: dict[str, Any] = {}
+        for name, values in columns.items():
+            if isinstance(values, np.ndarray):
+                chosen[name] = values[rows]
+            elif isinstance(values, _Columns):
+                chosen[name] = values.select(rows)
+        return replace(self, **chosen)
+
+
+@dataclass(frozen=True, eq=False)
+class _Series(_Columns):
+    """Columns over time."""
+
+    t: Floats  # [N] s, strictly increasing
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+
+@dataclass(frozen=True, eq=False)
+class CarCommands(_Columns):
     """Throttle and steering as they were commanded, and what is taken of a car before it drives."""
 
     throttle: Floats  # [N] in [-1, 1]
@@ -39,20 +65,15 @@ class CarCommands:
         """Return what is taken before a car drives, as the core has it; `held` curves stay."""
         return _core.CarPrior(self.top_speed, self.curvature, held)
 
-    def between(self, part: slice) -> CarCommands:
-        """Return the commands of some rows."""
-        return replace(self, throttle=self.throttle[part], steering=self.steering[part])
-
 
 @dataclass(frozen=True, eq=False)
-class Inputs:
+class Inputs(_Series):
     """Commands, or the body twist measured at the wheels; each sample is held until the next one.
 
     Raises:
         LogError: lengths differ, a value is not finite, or the stamps do not increase.
     """
 
-    t: Floats  # [N] s, strictly increasing
     v: Floats  # [N] m/s, forward
     vy: Floats  # [N] m/s, to the left
     omega: Floats  # [N] rad/s, counter-clockwise
@@ -65,19 +86,23 @@ class Inputs:
     def __repr__(self) -> str:
         return f"<Inputs: {len(self)} samples over {_duration(self.t):.1f} s>"
 
-    def __len__(self) -> int:
-        return len(self.t)
+    def twists(self) -> Floats:
+        """Return rows of (v, vy, omega), [N, 3]."""
+        return np.column_stack((self.v, self.vy, self.omega))
+
+    def rows(self) -> Floats:
+        """Return rows of (t, v, vy, omega), [N, 4]."""
+        return np.column_stack((self.t, self.twists()))
 
 
 @dataclass(frozen=True, eq=False)
-class Poses:
+class Poses(_Series):
     """Measured poses, only the fresh ones; the yaw is as measured, not unwrapped.
 
     Raises:
         LogError: lengths differ, a pose is not finite, or the stamps do not increase.
     """
 
-    t: Floats  # [M] s, strictly increasing
     x: Floats  # [M] m
     y: Floats  # [M] m
     yaw: Floats  # [M] rad, counter-clockwise
@@ -100,8 +125,15 @@ class Poses:
     def __repr__(self) -> str:
         return f"<Poses: {len(self)} over {_duration(self.t):.1f} s>"
 
-    def __len__(self) -> int:
-        return len(self.t)
+    @property
+    def as_measured(self) -> Poses:
+        """The poses before outliers were rejected and frames split at jumps."""
+        return self if self.measured is None else self.measured
+
+    def rows(self) -> Floats:
+        """Return rows of (t, x, y, yaw, frame), [M, 5]; the yaw is NaN where only positions were measured."""
+        yaw = np.full(len(self), np.nan) if self.course else self.yaw
+        return np.column_stack((self.t, self.x, self.y, yaw, self.frame.astype(np.float64)))
 
     def optional(self) -> dict[str, Floats | None]:
         """Return the columns that not every log has, by name."""
@@ -109,22 +141,18 @@ class Poses:
 
 
 @dataclass(frozen=True, eq=False)
-class Forces:
+class Forces(_Series):
     """A known force over the robot's mass; it holds until the next one.
 
     Raises:
         LogError: lengths differ, a value is not finite, or the stamps do not increase.
     """
 
-    t: Floats  # [N] s, strictly increasing
     x: Floats  # [N] m/s^2, along the robot's x axis
     y: Floats  # [N] m/s^2, to its left
 
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "x", "y"))
-
-    def __len__(self) -> int:
-        return len(self.t)
 
 
 @dataclass(frozen=True, eq=False)

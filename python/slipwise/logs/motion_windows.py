@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from slipwise import _core
-from slipwise.logs.log import Floats, Inputs, Run
+from slipwise.logs.log import Floats, Run
 
 _KNOWN_PART = 0.9  # of a window's time, inputs must be known
 _POSES = 9  # columns of the core's rows that tell of poses; 4 of the commands and 4 of the wheels follow
@@ -89,16 +89,8 @@ def _slower(run: Run, factor: float) -> Run:
 
 
 def _recording(run: Run) -> _core.Recording:
-    poses = run.poses if run.poses.measured is None else run.poses.measured
-    yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
-    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame.astype(np.float64)))
-    return _core.Recording(_rows(run.commands), _rows(run.wheels), np.empty((0, 3)), measured)
-
-
-def _rows(inputs: Inputs | None) -> Floats:
-    if inputs is None:
-        return np.empty((0, 4))
-    return np.column_stack((inputs.t, inputs.v, inputs.vy, inputs.omega))
+    commands, wheels = (np.empty((0, 4)) if i is None else i.rows() for i in (run.commands, run.wheels))
+    return _core.Recording(commands, wheels, np.empty((0, 3)), run.poses.as_measured.rows())
 
 
 def wrapped(angle: Floats, turn: float = 2.0 * np.pi) -> Floats:

@@ -238,7 +238,7 @@ def input_means(drive: Sequence[Driven], start: Floats, stop: Floats) -> tuple[F
 def _near(inputs: Inputs) -> Inputs:
     """Leave out inputs with a stray stamp, more than a day from the others."""
     near = np.abs(inputs.t - np.median(inputs.t)) < _DAY
-    return Inputs(inputs.t[near], inputs.v[near], inputs.vy[near], inputs.omega[near])
+    return inputs.select(near)
 
 
 def _lagged(inputs: Inputs, lag: float) -> Inputs:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,11 +25,8 @@ def find_jumps(poses: Poses, inputs: Inputs, unknown_after: float) -> Jumps:
 
     An input is unknown once it is older than `unknown_after` [s].
     """
-    rows = np.column_stack((inputs.t, inputs.v, inputs.vy, inputs.omega))
-    yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
-    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame.astype(np.float64)))
-    nothing = np.empty((0, 4))
-    gated = _core.gate_poses(_core.Recording(nothing, rows, np.empty((0, 3)), measured), unknown_after)
+    recording = _core.Recording(np.empty((0, 4)), inputs.rows(), np.empty((0, 3)), poses.rows())
+    gated = _core.gate_poses(recording, unknown_after)
     accepted = np.asarray(gated.accepted)
     frame = np.zeros(len(poses), dtype=np.int64)
     frame[_places(poses, accepted[:, 0])] = accepted[:, 4].astype(np.int64)
@@ -50,15 +47,6 @@ def without_jumps(poses: Poses, jumps: Jumps) -> Poses:
     The poses as measured go along: a learner finds the jumps when it would have on a robot.
     """
     keep = ~jumps.dropped
-    others = {name: None if values is None else values[keep] for name, values in poses.optional().items()}
-    clean = Poses(
-        t=poses.t[keep],
-        x=poses.x[keep],
-        y=poses.y[keep],
-        yaw=poses.yaw[keep],
-        frame=jumps.frame[keep],
-        course=poses.course,
-        **others,
-    )
+    clean = replace(poses.select(keep), frame=jumps.frame[keep])
     object.__setattr__(clean, "measured", poses)
     return clean

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.errors import LogError
-from slipwise.logs.log import Bools, Floats, Forces, Inputs, Log, Poses, Run
+from slipwise.logs.log import Floats, Inputs, Log, Poses, Run
 
 
 def cut_to_span(log: Log, start: float | None, end: float | None) -> Log:
@@ -42,41 +42,31 @@ def _stamps(run: Run) -> tuple[Floats, ...]:
 
 
 def _cut_run(run: Run, low: float, high: float) -> Run:
-    poses = _kept_poses(run.poses, (run.poses.t >= low) & (run.poses.t <= high))
+    def inside(poses: Poses) -> Poses:
+        return poses.select((poses.t >= low) & (poses.t <= high))
+
     extra = {}
     if run.extra:
         t = np.asarray(run.extra["t"], dtype=np.float64)
         extra = {name: values[(t >= low) & (t <= high)] for name, values in run.extra.items()}
-    others = {
-        name: _kept_poses(other, (other.t >= low) & (other.t <= high)) for name, other in run.others.items()
-    }
-    commands, wheels = _cut(run.commands, low, high), _cut(run.wheels, low, high)
     forces = run.forces
-    if forces is not None:
-        part = _held_part(forces.t, low, high)
-        forces = Forces(forces.t[part], forces.x[part], forces.y[part])
     return replace(
-        run, commands=commands, wheels=wheels, poses=poses, extra=extra, others=others, forces=forces
+        run,
+        commands=_cut(run.commands, low, high),
+        wheels=_cut(run.wheels, low, high),
+        poses=inside(run.poses),
+        extra=extra,
+        others={name: inside(other) for name, other in run.others.items()},
+        forces=None if forces is None else forces.select(_held_part(forces.t, low, high)),
     )
 
 
 def _cut(inputs: Inputs | None, low: float, high: float) -> Inputs | None:
-    if inputs is None:
-        return None
-    part = _held_part(inputs.t, low, high)
-    t, v, vy, omega = (column[part] for column in (inputs.t, inputs.v, inputs.vy, inputs.omega))
-    car = None if inputs.car is None else inputs.car.between(part)
-    cut = replace(inputs, t=t, v=v, vy=vy, omega=omega, car=car)
-    return cut if len(cut) else None
+    cut = None if inputs is None else inputs.select(_held_part(inputs.t, low, high))
+    return cut or None
 
 
 def _held_part(t: Floats, low: float, high: float) -> slice:
     """Return which samples lie in a span, with the one before, which still holds."""
     held = max(int(np.searchsorted(t, low, side="right")) - 1, 0)
     return slice(held, int(np.searchsorted(t, high, side="right")))
-
-
-def _kept_poses(poses: Poses, keep: Bools) -> Poses:
-    others = {name: None if v is None else v[keep] for name, v in poses.optional().items()}
-    t, x, y, yaw = (column[keep] for column in (poses.t, poses.x, poses.y, poses.yaw))
-    return Poses(t=t, x=x, y=y, yaw=yaw, frame=poses.frame[keep], course=poses.course, **others)

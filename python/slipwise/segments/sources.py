@@ -36,8 +36,7 @@ def sourced_rows(run: Run, poses: Floats, sources: Sequence[str]) -> Floats:
         poses: rows of the first source, as `recording_rows` returns them.
         sources: all names, the first source's first.
     """
-    first = run.poses if run.poses.measured is None else run.poses.measured
-    parts = [np.column_stack((poses, np.zeros(len(poses)), _fixes(first)))]
+    parts = [np.column_stack((poses, np.zeros(len(poses)), _fixes(run.poses.as_measured)))]
     for number, name in enumerate(sources[1:], start=1):
         if name in run.others:
             other = run.others[name]
@@ -53,8 +52,7 @@ def pose_rows(poses: Poses) -> Floats:
         np.zeros(len(poses)) if std is None else np.nan_to_num(std, nan=0.0)
         for std in (poses.std_xy, poses.std_yaw)
     ]
-    yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
-    return np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame, *deviations))
+    return np.column_stack((poses.rows(), *deviations))
 
 
 def _fixes(poses: Poses) -> Floats:

@@ -14,7 +14,7 @@ from slipwise import _core
 from slipwise.logs.gyro import COLUMN as GYRO
 from slipwise.logs.gyro import gyro_alone, gyro_rows
 from slipwise.logs.held import UNKNOWN_AFTER
-from slipwise.logs.log import Inputs, LeftOut, Poses, Run
+from slipwise.logs.log import Inputs, LeftOut, Run
 from slipwise.logs.readings import READINGS, number_rows
 from slipwise.segments.sources import pose_rows, sourced_rows
 
@@ -72,7 +72,7 @@ def input_rows(inputs: Inputs | None) -> Floats:
         return np.empty((0, 4))
     if inputs.car is not None:
         return np.column_stack((inputs.t, inputs.car.throttle, inputs.vy, inputs.car.steering))
-    return np.column_stack((inputs.t, inputs.v, inputs.vy, inputs.omega))
+    return inputs.rows()
 
 
 def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
@@ -82,21 +82,17 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
     std_xy, std_yaw), with deviations of 0 where they are not known and a yaw of NaN where only positions were
     measured.
     """
-    measured = pose_rows(_measured(run))
+    measured = pose_rows(run.poses.as_measured)
     return input_rows(run.commands), input_rows(run.wheels), attitude_rows(run), measured
 
 
 def attitude_rows(run: Run) -> Floats:
     """Return what is known of the run's attitude as (t, roll, pitch), [A, 3]."""
-    poses = _measured(run)
+    poses = run.poses.as_measured
     if poses.roll is None or poses.pitch is None:
         return np.empty((0, 3))
     attitudes: Floats = np.column_stack((poses.t, poses.roll, poses.pitch))
     return attitudes[np.isfinite(attitudes).all(axis=1)]
-
-
-def _measured(run: Run) -> Poses:
-    return run.poses if run.poses.measured is None else run.poses.measured
 
 
 def force_rows(run: Run) -> Floats:

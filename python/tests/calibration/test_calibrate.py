@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 from sample_logs import (
     Drive,
-    inputs_until,
-    kept,
     simulated_log,
     simulated_run,
     steady_run,
@@ -52,11 +50,9 @@ def test_clock_offset_is_recovered_from_short_runs_that_begin_in_motion() -> Non
 
 def part_of(run: Run, start: float, end: float) -> Run:
     assert run.wheels is not None
-    until = inputs_until(run.wheels, end)
-    keep = until.t >= start
-    wheels = replace(until, t=until.t[keep], v=until.v[keep], vy=until.vy[keep], omega=until.omega[keep])
+    wheels = run.wheels.select((run.wheels.t >= start) & (run.wheels.t <= end))
     inside = (run.poses.t >= start) & (run.poses.t <= end)
-    return replace(run, commands=None, wheels=wheels, poses=kept(run.poses, inside))
+    return replace(run, commands=None, wheels=wheels, poses=run.poses.select(inside))
 
 
 def test_history_ends_where_the_model_is() -> None:
@@ -130,12 +126,12 @@ def test_never_moving_robot_is_said_though_a_pose_was_late() -> None:
     run = steady_run(seconds=20.0, v=0.0)
     gap = (run.poses.t < 5.0) | (run.poses.t > 7.0)
     with pytest.raises(LogError, match="the robot never moves in this log"):
-        calibrate(Log(runs=(with_poses(run, kept(run.poses, gap)),)))
+        calibrate(Log(runs=(with_poses(run, run.poses.select(gap)),)))
 
 
 def test_ten_rows_are_too_few_and_said_so() -> None:
     run = steady_run(seconds=0.9)
-    short = with_poses(run, kept(run.poses, run.poses.t < 0.45))
+    short = with_poses(run, run.poses.select(run.poses.t < 0.45))
     with pytest.raises(LogError, match=r"no window to learn from: poses and inputs must overlap"):
         calibrate(Log(runs=(short,)))
 

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from sample_logs import Drive, inputs_until, kept, simulated_run
+from sample_logs import Drive, inputs_until, simulated_run
 
 from slipwise import _core
 from slipwise.calibration import Settings
@@ -43,7 +43,7 @@ def until(log: Log, t: float) -> Log:
     """Return the log as it would have been recorded until `t` [s]."""
     runs = []
     for run in log.runs:
-        poses = kept(run.poses, run.poses.t <= t)
+        poses = run.poses.select(run.poses.t <= t)
         commands, wheels = (None if x is None else inputs_until(x, t) for x in (run.commands, run.wheels))
         if len(poses) > 1:
             runs.append(replace(run, poses=poses, commands=commands, wheels=wheels))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sample_logs import Drive, inputs_until, kept, simulated_log, simulated_run
+from sample_logs import Drive, inputs_until, simulated_log, simulated_run
 
 from slipwise import _core
 from slipwise.calibration import make_settings
@@ -61,7 +61,7 @@ def cut_off(log: Log, t: float) -> Log:
     """Return the log as it would have been recorded until `t` [s]."""
     runs = []
     for run in log.runs:
-        poses = kept(run.poses, run.poses.t <= t)
+        poses = run.poses.select(run.poses.t <= t)
         commands, wheels = (None if x is None else inputs_until(x, t) for x in (run.commands, run.wheels))
         if len(poses) > 1:
             runs.append(replace(run, commands=commands, wheels=wheels, poses=poses))

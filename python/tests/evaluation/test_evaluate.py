@@ -175,14 +175,7 @@ def test_wheels_that_start_late_are_used_where_they_are() -> None:
     run = simulated_run(Drive(seconds=40.0, lag=0.3))
     assert run.wheels is not None
     keep = run.wheels.t > 20.0
-    late = replace(
-        run.wheels,
-        t=run.wheels.t[keep],
-        v=run.wheels.v[keep],
-        vy=run.wheels.vy[keep],
-        omega=run.wheels.omega[keep],
-    )
-    log = Log(runs=(replace(run, wheels=late),))
+    log = Log(runs=(replace(run, wheels=run.wheels.select(keep)),))
     options = EvaluationOptions(methods=("auto",), horizons=(2.0,))
     (wheel,) = evaluate(log, input="wheel", options=options).predictions
     (command,) = evaluate(log, input="command", options=options).predictions

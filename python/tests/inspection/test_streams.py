@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from sample_logs import held, kept, steady_run, with_poses
+from sample_logs import held, steady_run, with_poses
 
 from slipwise.inspection.streams import streams_of
 from slipwise.logs import Log, empty_poses
@@ -27,7 +27,7 @@ def test_rates_durations_and_counts_add_up_over_runs() -> None:
 def test_gaps_are_counted_and_the_longest_is_named() -> None:
     run = steady_run(20.0)
     t = run.poses.t
-    run = with_poses(run, kept(run.poses, ~((t > 5.0) & (t < 6.0)) & ~((t > 9.0) & (t < 12.0))))
+    run = with_poses(run, run.poses.select(~((t > 5.0) & (t < 6.0)) & ~((t > 9.0) & (t < 12.0))))
     poses = streams_of(Log(runs=(run,)), WindowRules())[-1]
     assert poses.gaps == 2
     assert np.isclose(poses.longest_gap, 3.0)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sample_logs import Drive, held, inputs_until, kept, poses_of, simulated_run, steady_run, with_poses
+from sample_logs import Drive, held, inputs_until, poses_of, simulated_run, steady_run, with_poses
 
 from slipwise import _core
 from slipwise.logs import Inputs, Poses, Run
@@ -108,7 +108,7 @@ def test_unknown_input_is_not_crossed() -> None:
 def test_input_is_known_for_exactly_as_long_as_the_rules_say() -> None:
     t = np.concatenate((np.arange(0.0, 2.05, 0.1), np.arange(3.0, 5.05, 0.1)))
     poses = straight_poses(np.arange(0.0, 5.05, 0.1))
-    assert (1.5, 2.5) in pairs(cut(run_of(kept(poses, poses.t > 0.45), held(t)), 1.0))
+    assert (1.5, 2.5) in pairs(cut(run_of(poses.select(poses.t > 0.45), held(t)), 1.0))
     longer = WindowRules(unknown_after=1.0)
     assert pairs(cut(run_of(poses, held(t)), 1.0, longer)) == [(float(k), k + 1.0) for k in range(5)]
 
@@ -181,7 +181,7 @@ def test_no_window_changes_when_the_log_is_cut_off_after_its_end() -> None:
         part = replace(
             run,
             commands=inputs_until(run.commands, until),
-            poses=kept(run.poses, run.poses.t <= until),
+            poses=run.poses.select(run.poses.t <= until),
         )
         here = pairs(cut(part, 1.0))
         # The last pose before the cut may stand in for a nearer one behind it.

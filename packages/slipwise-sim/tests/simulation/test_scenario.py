@@ -128,8 +128,7 @@ def test_senseless_scenario_is_refused(subtests: pytest.Subtests) -> None:
 
 
 def test_empty_commands_are_refused() -> None:
-    commands = hold(1.0, 0.0, 1.0)
-    none = replace(commands, t=commands.t[:0], v=commands.v[:0], vy=commands.vy[:0], omega=commands.omega[:0])
+    none = hold(1.0, 0.0, 1.0).select(slice(0))
     with pytest.raises(SettingsError, match="no commands"):
         simulate(replace(SHORT, commands=none), seed=0)
 

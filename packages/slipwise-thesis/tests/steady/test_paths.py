@@ -85,8 +85,7 @@ def test_a_hold_that_is_too_short_is_counted() -> None:
 def test_gaps_between_poses_and_ambiguous_headings_make_no_segment() -> None:
     run = steady_run(1.0, 0.0, 3.0)
     keep = np.delete(np.arange(31), np.arange(10, 18))
-    gap = Poses(*(getattr(run.poses, name)[keep] for name in ("t", "x", "y", "yaw", "frame")))
-    assert kinds(cut(replace(run, poses=gap))) == {"pose-gap": 1, "short-hold": 1}
+    assert kinds(cut(replace(run, poses=run.poses.select(keep)))) == {"pose-gap": 1, "short-hold": 1}
     assert "heading-ambiguous" in kinds(cut(steady_run(0.0, 40.0, 3.0)))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.held import HeldSum
+from slipwise.logs.held import HeldSum, rests
 from slipwise.logs.log import Floats, Inputs, Run
 
 if TYPE_CHECKING:
@@ -62,8 +62,8 @@ def _echoes(commands: Inputs | None, wheels: Inputs | None) -> tuple[int, int, i
     """Return how many speeds of wheels are commands, of how many while it is not zero, and its changes."""
     if commands is None or wheels is None or not len(commands) or not len(wheels):
         return 0, 0, 0
-    given = np.column_stack((commands.v, commands.vy, commands.omega))
-    driven = np.column_stack((wheels.v, wheels.vy, wheels.omega))
+    given = commands.twists()
+    driven = wheels.twists()
     newest = np.searchsorted(commands.t, wheels.t, side="right") - 1
     known = newest >= 0
     moves = known & (np.abs(given[np.maximum(newest, 0)]).max(axis=1) > _MOVES)
@@ -115,7 +115,7 @@ def _held_answers(commands: Inputs | None, wheels: Inputs | None, column: str) -
     """Return the sizes of commands that were held, and of what the wheels then did in their sense, [2, N]."""
     if commands is None or wheels is None or len(commands) < 2 or not len(wheels):
         return np.empty((2, 0))
-    given = np.column_stack((commands.v, commands.vy, commands.omega))
+    given = commands.twists()
     new = np.flatnonzero(np.concatenate(([True], (np.diff(given, axis=0) != 0.0).any(axis=1))))
     begin, end = commands.t[new] + _SETTLED, np.append(commands.t[new[1:]], commands.t[-1])
     values, found = getattr(wheels, column), []
@@ -160,10 +160,7 @@ def _driven_at_rest(run: Run, unknown_after: float) -> list[tuple[float, str]]:
     c, w = run.commands, run.wheels
     if c is None or w is None or not len(c) or not len(w):
         return []
-    still = np.abs(np.column_stack((c.v, c.vy, c.omega))).max(axis=1) < _NONE
-    same = still[1:] & still[:-1] & (np.diff(c.t) <= unknown_after)
-    first = np.flatnonzero(still & np.concatenate(([True], ~same)))
-    last = np.flatnonzero(still & np.concatenate((~same, [True])))
+    first, last = rests(c, _NONE, unknown_after)
     ends = np.minimum(np.append(c.t[1:], np.inf)[last], c.t[last] + unknown_after)
     begins = np.minimum(c.t[first] + _STOPPED, ends)
     drives = np.hypot(w.v, w.vy) + _ARM * np.abs(w.omega) > _DRIVES

@@ -151,10 +151,8 @@ def stops_of(pairs: Iterable[tuple[Inputs, Poses]]) -> CommandStops:
 
 
 def _thinned(poses: Poses) -> Poses:
-    """Return poses that are about `_APART` from each other; what beside them was measured is left away."""
-    _, kept = np.unique(np.floor(poses.t / _APART), return_index=True)
-    t, x, y, yaw = (column[kept] for column in (poses.t, poses.x, poses.y, poses.yaw))
-    return Poses(t, x, y, yaw, poses.frame[kept], course=poses.course)
+    """Return poses that are about `_APART` from each other."""
+    return poses.select(np.unique(np.floor(poses.t / _APART), return_index=True)[1])
 
 
 def _moves(commands: Inputs) -> Bools:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.log import Bools, Inputs, Poses, Run
+from slipwise.logs.held import rests
+from slipwise.logs.log import Bools, Poses, Run
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import WholeLog
@@ -55,21 +56,13 @@ def _rests(run: Run, unknown_after: float) -> list[tuple[float, float, str]]:
     if w is None or len(w) < 2 or len(p) < 2:
         return []
     found = []
-    for begin, end in _standing(w, unknown_after):
+    first, last = rests(w, _STANDS, unknown_after)
+    for begin, end in zip(w.t[first].tolist(), w.t[last].tolist(), strict=True):
         at = (p.t > begin + _SETTLED) & (p.t < end)
         far = _drifted(p, at) if end - begin > _LONG else 0.0
         if far > _FAR:
             found.append((far, end - begin, run.place(begin)))
     return found
-
-
-def _standing(wheels: Inputs, unknown_after: float) -> list[tuple[float, float]]:
-    """Return from when until when the wheels stood [s], each time."""
-    still = np.abs(np.column_stack((wheels.v, wheels.vy, wheels.omega))).max(axis=1) < _STANDS
-    same = still[1:] & still[:-1] & (np.diff(wheels.t) <= unknown_after)
-    first = wheels.t[still & np.concatenate(([True], ~same))]
-    last = wheels.t[still & np.concatenate((~same, [True]))]
-    return list(zip(first.tolist(), last.tolist(), strict=True))
 
 
 def _drifted(poses: Poses, at: Bools) -> float:

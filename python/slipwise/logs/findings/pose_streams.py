@@ -95,10 +95,7 @@ def inputs_of(run: Run, name: str) -> Inputs | None:
 
 def _frozen(run: Run, whole: WholeLog) -> list[tuple[float, str]]:
     """Return seconds and place of each stretch of a run."""
-    inputs, poses = (
-        inputs_of(run, whole.input_name),
-        run.poses if run.poses.measured is None else run.poses.measured,
-    )
+    inputs, poses = inputs_of(run, whole.input_name), run.poses.as_measured
     if inputs is None or len(poses) < 3:
         return []
     first, last = _stretches(poses)

@@ -10,7 +10,7 @@ import numpy as np
 from slipwise.logs.findings.commanded_motion import CommandedMotion
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.source_watch import SourceWatch
-from slipwise.logs.log import Bools, Floats, Inputs, Run
+from slipwise.logs.log import Floats, Inputs, Run
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import WholeLog
@@ -80,7 +80,7 @@ class IdleSource(TwoSources):
         for run in whole.log.runs:
             if run.commands is None or len(run.commands) < 2:
                 continue
-            driver = _part(run.commands, _asks(run.commands))
+            driver = run.commands.select((run.commands.twists() != 0.0).any(axis=1))
             at = _interrupted(run.commands, driver)
             motion = CommandedMotion.between(driver, run.poses)
             zeros, moves = zeros + len(at), moves + len(driver)
@@ -100,22 +100,13 @@ class IdleSource(TwoSources):
         )
 
 
-def _asks(commands: Inputs) -> Bools:
-    """Say which commands are not exactly zero."""
-    return np.asarray((commands.v != 0.0) | (commands.vy != 0.0) | (commands.omega != 0.0))
-
-
-def _part(commands: Inputs, kept: Bools) -> Inputs:
-    return Inputs(commands.t[kept], commands.v[kept], commands.vy[kept], commands.omega[kept])
-
-
 def _interrupted(commands: Inputs, driver: Inputs) -> Floats:
     """Return when [s] zeros stood before a command that is on time and like the one before the zeros."""
     steps = np.diff(driver.t)
     if not len(steps):
         return np.empty(0)
     between = np.diff(np.searchsorted(commands.t, driver.t)) > 1
-    rows = np.column_stack((driver.v, driver.vy, driver.omega))
+    rows = driver.twists()
     alike = (np.abs(np.diff(rows, axis=0)) <= _ALIKE[0] + _ALIKE[1] * np.abs(rows[1:])).all(axis=1)
     return np.asarray(driver.t[1:][between & alike & (steps <= _IN_TIME * np.median(steps))])
 
@@ -133,9 +124,8 @@ def _asked_and_done(motion: CommandedMotion, at: Floats, unknown_after: float) -
 
 
 def _streams(run: Run) -> list[tuple[str, SourceWatch, Floats, Floats]]:
-    poses = run.poses if run.poses.measured is None else run.poses.measured
+    poses = run.poses.as_measured
     found = [("pose", pose_watch(), poses.t, np.column_stack((poses.x, poses.y)))]
     if run.wheels is not None:
-        w = run.wheels
-        found.append(("wheel", twist_watch(), w.t, np.column_stack((w.v, w.vy, w.omega))))
+        found.append(("wheel", twist_watch(), run.wheels.t, run.wheels.twists()))
     return found

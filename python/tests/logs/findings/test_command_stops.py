@@ -34,8 +34,7 @@ def pieces(commands: Inputs, poses: Poses, seconds: float) -> list[tuple[Inputs,
             max(int(np.searchsorted(commands.t, begin, side="right")) - 1, 0),
             int(np.searchsorted(commands.t, begin + seconds, side="right")),
         )
-        inputs = Inputs(t=commands.t[c], v=commands.v[c], vy=commands.vy[c], omega=commands.omega[c])
-        found.append((inputs, Poses(poses.t[p], poses.x[p], poses.y[p], poses.yaw[p], poses.frame[p])))
+        found.append((commands.select(c), poses.select(p)))
     return found
 
 
