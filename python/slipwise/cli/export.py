@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -125,6 +125,7 @@ def export(
       slipwise export commands.yaml --ardupilot 4.6 --logged ATC_STR_RAT_FF=0.2
       slipwise export model.yaml --to c-header -o model.h --json -
     """  # noqa: D301
+    given = locals()
     from slipwise.cli.bad_verdict import say_refused, without_bad_input
     from slipwise.cli.export_merge import merge_into
     from slipwise.cli.output import Output
@@ -135,25 +136,8 @@ def export(
 
     out = Output(json)
     refuse_unwritable(out.written_file, inputs=[model])
-    options = ExportOptions(
-        horizon=horizon,
-        wheel_separation=wheel_separation,
-        logged_separation_multiplier=logged_separation_multiplier,
-        logged_radius_multiplier=logged_radius_multiplier,
-        min_turning_radius=min_turning_radius,
-        ros_distro=ros_distro or None,
-        update_rate=update_rate,
-        planning_horizon=planning_horizon,
-        limits=limits,
-        stamped_commands=stamped_commands,
-        omni=omni,
-        small_alphas=small_alphas,
-        no_side_slip=no_side_slip,
-        wheel_base=wheel_base,
-        px4=px4,
-        ardupilot=ardupilot,
-        logged=_logged(logged or []),
-    )
+    named = {each.name: given[each.name] for each in fields(ExportOptions)}
+    options = ExportOptions(**named | {"ros_distro": ros_distro or None, "logged": _logged(logged or [])})
     no_target = merge is not None and px4 is None and ardupilot is None
     target = to or (TargetName.all if no_target else _of_firmware(px4, ardupilot))
     if target is not TargetName.all:

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from slipwise.errors import ModelError
-from slipwise.export.body_limits import BodyLimits
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.measured_limits import MeasuredLimits
 from slipwise.export.options import ExportOptions
@@ -164,11 +163,11 @@ def _diagonal(
 
 def _limits(model: Model, distro: str) -> list[Entry | Kept]:
     numbers = LearnedNumbers(model)
-    measured = MeasuredLimits(model, BodyLimits(), numbers)
-    turn = measured.turn()
+    measured = MeasuredLimits(model, numbers)
+    turn = measured.top_yaw_rate()
     named = (
-        ("linear.x.max_velocity", measured.forward(), 1.0, "m/s"),
-        ("linear.x.min_velocity", measured.backward(), -1.0, "m/s"),
+        ("linear.x.max_velocity", measured.top_speed(), 1.0, "m/s"),
+        ("linear.x.min_velocity", measured.top_speed_back(), -1.0, "m/s"),
         ("angular.z.max_velocity", turn, 1.0, "rad/s"),
         ("angular.z.min_velocity", turn, -1.0, "rad/s"),
     )

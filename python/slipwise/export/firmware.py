@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from slipwise.errors import ModelError
-from slipwise.export.firmware_numbers import FirmwareNumbers, Quantity
+from slipwise.export.firmware_numbers import FirmwareNumbers
 from slipwise.export.firmware_table import ARDUPILOT, PX4, FirmwareParameter, FirmwareTable
 from slipwise.export.learned_number import LearnedNumber
+from slipwise.export.measured_limits import Quantity
 from slipwise.export.options import ExportOptions
 from slipwise.export.origin import one_line
 from slipwise.export.parameter_file import Value

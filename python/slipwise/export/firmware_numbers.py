@@ -7,32 +7,19 @@ points to the right, `is_left` is the one place that turns it round.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 
-from slipwise.export.actuator import actuator_of
-from slipwise.export.body_limits import BodyLimits, body_limits, slip_gains, strictest
+from slipwise.export.body_limits import slip_gains, strictest
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
-from slipwise.export.measured_limits import Limit, MeasuredLimits
+from slipwise.export.measured_limits import Answer, MeasuredLimits, Quantity
 from slipwise.export.options import ExportOptions
 from slipwise.export.wheel_multipliers import wheel_multipliers
-from slipwise.models.body_gains import body_twists, turning_twists
+from slipwise.models.body_gains import turning_twists
 from slipwise.models.model import Model
 
 _FEEDBACK = (
     "exact where the log was driven by feed-forward alone (P and I at zero), too small a change otherwise"
 )
-
-
-@dataclass(frozen=True, eq=False)
-class Quantity:
-    """A number, and how it was found."""
-
-    number: LearnedNumber
-    source: str
-
-
-Answer = Quantity | str  # or why there is none
 
 
 def is_left(y_right: float) -> bool:
@@ -47,17 +34,12 @@ class FirmwareNumbers:
         self._model, self._options = model, options
         self.numbers = LearnedNumbers(model.body)
         self._commands = model.content.input == "command"
-        actuator, limits = actuator_of(model), model.limits_section
-        slip = slip_gains(self.numbers, body_twists(model))
-        behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
-        before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
-        self._speed_gain, self._yaw_gain = behind[0] * before[0], behind[1] * before[1]
-        self._limits: BodyLimits = body_limits(limits, behind, self.numbers)
-        self._measured = MeasuredLimits(model, self._limits, self.numbers)
+        self._measured = MeasuredLimits(model, self.numbers)
+        self._speed_gain, self._yaw_gain = self._measured.gains
 
     def answer(self, quantity: str) -> Answer:
         """Return a quantity of the table, or why the model has none."""
-        ask: Callable[[], Answer] = getattr(self, f"_{quantity}")
+        ask: Callable[[], Answer] = getattr(self, f"_{quantity}", None) or getattr(self._measured, quantity)
         return ask()
 
     def _logged(self, *names: str) -> list[float] | str:
@@ -93,36 +75,11 @@ class FirmwareNumbers:
         """Whether limits are to be written."""
         return self._options.limits
 
-    def _limit(self, found: Sequence[LearnedNumber], what: str) -> Answer:
-        if not found:
-            return f"this log shows no limit of the {what}"
-        return Quantity(strictest(found, self.numbers), f"learned limit of the {what}")
-
-    @staticmethod
-    def _answer(limit: Limit | str) -> Answer:
-        return limit if isinstance(limit, str) else Quantity(limit.number, limit.source)
-
-    def _top_speed(self) -> Answer:
-        return self._answer(self._measured.forward())
-
-    def _top_yaw_rate(self) -> Answer:
-        return self._answer(self._measured.turn())
-
-    def _acceleration(self) -> Answer:
-        return self._answer(self._measured.acceleration())
-
-    def _braking(self) -> Answer:
-        return self._answer(self._measured.braking())
-
-    def _yaw_acceleration(self) -> Answer:
-        return self._answer(self._measured.yaw_acceleration())
-
-    def _yaw_braking(self) -> Answer:
-        return self._answer(self._measured.yaw_braking())
-
     def _full_throttle_speed(self) -> Answer:
-        if self._limits.saturation_v and "RO_MAX_THR_SPEED" not in self._options.logged:
-            return self._limit(self._limits.saturation_v, "speed, taken to be that of full throttle")
+        learned = self._measured.learned.saturation_v
+        if learned and "RO_MAX_THR_SPEED" not in self._options.logged:
+            source = "learned limit of the speed, taken to be that of full throttle"
+            return Quantity(strictest(learned, self.numbers), source)
         return self._scaled("RO_MAX_THR_SPEED", self._speed_gain, "speed")
 
     def _yaw_rate_correction(self) -> Answer:

@@ -6,8 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from slipwise.export.body_limits import BodyLimits, strictest
+from slipwise.export.actuator import actuator_of
+from slipwise.export.body_limits import Gains, body_limits, slip_gains, strictest
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
+from slipwise.models.body_gains import body_twists
 from slipwise.models.model import Model
 from slipwise.models.schema import MeasuredBody
 
@@ -18,11 +20,14 @@ AS_FAR = "as fast as the poses show the body"
 
 
 @dataclass(frozen=True, eq=False)
-class Limit:
-    """A bound of the body, as a magnitude, and where it comes from."""
+class Quantity:
+    """A number, and how it was found; a bound of the body is a magnitude."""
 
     number: LearnedNumber
     source: str
+
+
+Answer = Quantity | str  # or why there is none
 
 
 class MeasuredLimits:
@@ -30,56 +35,67 @@ class MeasuredLimits:
 
     Args:
         model: whose log was measured.
-        learned: limits of the drive that were learned, as limits of the body.
         numbers: of the model.
+
+    Attributes:
+        actuator: of the model.
+        gains: of the body's speed and yaw rate over those that are commanded.
+        behind: the same over what is behind the drive's limits.
+        learned: limits of the drive that were learned, as limits of the body.
     """
 
-    def __init__(self, model: Model, learned: BodyLimits, numbers: LearnedNumbers) -> None:
+    def __init__(self, model: Model, numbers: LearnedNumbers) -> None:
         self._body = model.content.range.body
         self._driven_back = model.content.range.speed[0] < 0.0
-        self._learned, self._numbers = learned, numbers
+        self._numbers = numbers
+        self.actuator, limits = actuator_of(model), model.limits_section
+        slip = slip_gains(numbers, body_twists(model))
+        self.behind: Gains = (self.actuator.v.gain * slip[0], self.actuator.omega.gain * slip[1])
+        before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
+        self.gains: Gains = (self.behind[0] * before[0], self.behind[1] * before[1])
+        self.learned = body_limits(limits, self.behind, numbers)
 
-    def forward(self) -> Limit | str:
+    def top_speed(self) -> Answer:
         """Speed ahead [m/s]."""
         return self._top(lambda body: body.speed[1])
 
-    def backward(self) -> Limit | str:
+    def top_speed_back(self) -> Answer:
         """Speed in reverse [m/s]; 0 where it was never driven so, whatever noise of poses shows."""
         return self._top(lambda body: -body.speed[0] if self._driven_back else 0.0)
 
-    def turn(self) -> Limit | str:
+    def top_yaw_rate(self) -> Answer:
         """Yaw rate to the side where it went further [rad/s]."""
         return self._top(lambda body: max(map(abs, body.yaw_rate)))
 
-    def acceleration(self, *more: Limit) -> Limit | str:
+    def acceleration(self, *more: Quantity) -> Answer:
         """Away from standstill [m/s^2], by the strictest of what was learned and `more`."""
-        return self._rate(self._learned.slew_rate_up_v, "acceleration", 0, more)
+        return self._rate(self.learned.slew_rate_up_v, "acceleration", 0, more)
 
-    def braking(self, *more: Limit) -> Limit | str:
+    def braking(self, *more: Quantity) -> Answer:
         """Towards standstill [m/s^2]."""
-        return self._rate(self._learned.slew_rate_down_v, "acceleration", 1, more)
+        return self._rate(self.learned.slew_rate_down_v, "acceleration", 1, more)
 
-    def yaw_acceleration(self, *more: Limit) -> Limit | str:
+    def yaw_acceleration(self, *more: Quantity) -> Answer:
         """Away from no turn [rad/s^2]."""
-        return self._rate(self._learned.slew_rate_up_omega, "yaw_acceleration", 0, more)
+        return self._rate(self.learned.slew_rate_up_omega, "yaw_acceleration", 0, more)
 
-    def yaw_braking(self, *more: Limit) -> Limit | str:
+    def yaw_braking(self, *more: Quantity) -> Answer:
         """Towards no turn [rad/s^2]."""
-        return self._rate(self._learned.slew_rate_down_omega, "yaw_acceleration", 1, more)
+        return self._rate(self.learned.slew_rate_down_omega, "yaw_acceleration", 1, more)
 
-    def _top(self, of: Callable[[MeasuredBody], float]) -> Limit | str:
+    def _top(self, of: Callable[[MeasuredBody], float]) -> Answer:
         body = self._measured()
-        return body if isinstance(body, str) else Limit(self._numbers.exactly(of(body)), AS_FAR)
+        return body if isinstance(body, str) else Quantity(self._numbers.exactly(of(body)), AS_FAR)
 
     def _rate(
-        self, learned: Sequence[LearnedNumber], name: str, place: int, more: Sequence[Limit]
-    ) -> Limit | str:
+        self, learned: Sequence[LearnedNumber], name: str, place: int, more: Sequence[Quantity]
+    ) -> Answer:
         what = (
             name.replace("_", " ")
             if place == 0
             else name.replace("acceleration", "braking").replace("_", " ")
         )
-        found = [Limit(number, f"the drive's learned limit of the {what}") for number in learned]
+        found = [Quantity(number, f"the drive's learned limit of the {what}") for number in learned]
         found += more
         if not found:
             return f"this log shows no limit of the {what}"

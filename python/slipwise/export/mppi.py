@@ -6,15 +6,15 @@ from __future__ import annotations
 from dataclasses import replace
 
 from slipwise.errors import ModelError
-from slipwise.export.actuator import Actuator, ChannelResponse, actuator_of
-from slipwise.export.body_limits import Gains, body_limits, slip_gains
+from slipwise.export.actuator import Actuator, ChannelResponse
+from slipwise.export.body_limits import Gains, slip_gains
 from slipwise.export.learned_number import LearnedNumbers
-from slipwise.export.measured_limits import Limit, MeasuredLimits
+from slipwise.export.measured_limits import MeasuredLimits, Quantity
 from slipwise.export.mppi_limits import dead_bands, limit_notes
 from slipwise.export.options import ExportOptions
 from slipwise.export.parameter_file import Entry, Kept, ParameterFile, for_release, stated
 from slipwise.export.ros_tables import MPPI, checked_distro, motion_model
-from slipwise.models.body_gains import body_twists, turning_twists
+from slipwise.models.body_gains import turning_twists
 from slipwise.models.model import Model
 
 LONGEST_DELAY = 0.25  # of the planning horizon; a longer one leaves the controller little to decide
@@ -34,22 +34,18 @@ def mppi(model: Model, options: ExportOptions) -> ParameterFile:
             advice="calibrate with `--input command`",
         )
     distro = checked_distro(options.ros_distro, "Nav2's MPPI")
-    numbers, actuator, limits = LearnedNumbers(model.body), actuator_of(model), model.limits_section
-    slip = slip_gains(numbers, body_twists(model))
-    behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
-    before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
-    gains = (behind[0] * before[0], behind[1] * before[1])
-    measured = MeasuredLimits(model, body_limits(limits, behind, numbers), numbers)
+    numbers, limits = LearnedNumbers(model.body), model.limits_section
+    measured = MeasuredLimits(model, numbers)
     entries = [
         *_kind(options, distro),
-        *_delays(actuator, numbers, options.planning_horizon),
-        *(_limits(model, measured, actuator, numbers) if options.limits else ()),
+        *_delays(measured.actuator, numbers, options.planning_horizon),
+        *(_limits(model, measured, numbers) if options.limits else ()),
         *_turning(model, options, numbers, distro),
         *dead_bands(limits, numbers),
     ]
     notes = [
         f"Names of Nav2 for ROS 2 {distro.capitalize()}.",
-        _reached(gains, numbers),
+        _reached(measured.gains, numbers),
         *limit_notes(limits),
     ]
     return ParameterFile(
@@ -117,15 +113,14 @@ def _delay(name: str, channel: ChannelResponse, numbers: LearnedNumbers, horizon
     return stated((name,), late, meaning, numbers)
 
 
-def _limits(
-    model: Model, measured: MeasuredLimits, actuator: Actuator, numbers: LearnedNumbers
-) -> list[Entry | Kept]:
+def _limits(model: Model, measured: MeasuredLimits, numbers: LearnedNumbers) -> list[Entry | Kept]:
     """Return bounds of speeds as the poses show them, accelerations by the drive's limits or lateness."""
+    actuator = measured.actuator
     v, omega = _ramps(model, actuator, numbers)
     found = {
-        "vx_max": (measured.forward(), 1.0, "m/s"),
-        "vx_min": (measured.backward(), -1.0, "m/s"),
-        "wz_max": (measured.turn(), 1.0, "rad/s"),
+        "vx_max": (measured.top_speed(), 1.0, "m/s"),
+        "vx_min": (measured.top_speed_back(), -1.0, "m/s"),
+        "wz_max": (measured.top_yaw_rate(), 1.0, "rad/s"),
         "ax_max": (measured.acceleration(*v), 1.0, "m/s^2"),
         "ax_min": (measured.braking(*v), -1.0, "m/s^2"),
         "az_max": (measured.yaw_acceleration(*omega), 1.0, "rad/s^2"),
@@ -143,10 +138,10 @@ def _limits(
     ]
 
 
-def _ramps(model: Model, actuator: Actuator, numbers: LearnedNumbers) -> list[list[Limit]]:
+def _ramps(model: Model, actuator: Actuator, numbers: LearnedNumbers) -> list[list[Quantity]]:
     """Return the ramps to the fastest speed that lose as much way as the robot does by being late."""
     body = model.content.range.body
-    ramps: list[list[Limit]] = []
+    ramps: list[list[Quantity]] = []
     for channel, name in ((actuator.v, "speed"), (actuator.omega, "yaw_rate")):
         late = channel.mean_delay
         fastest = 0.0 if body is None else max(map(abs, getattr(body, name)))
@@ -157,7 +152,7 @@ def _ramps(model: Model, actuator: Actuator, numbers: LearnedNumbers) -> list[li
             f"the robot answers {late.value:.3g} s late, delay and lag together: a ramp of this slope to the"
             " fastest of the log loses as much way"
         )
-        ramps.append([Limit(numbers.exactly(fastest / 2.0) / late, source)])
+        ramps.append([Quantity(numbers.exactly(fastest / 2.0) / late, source)])
     return ramps
 
 

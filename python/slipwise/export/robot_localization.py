@@ -6,9 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from slipwise.export.actuator import ChannelResponse, actuator_of
-from slipwise.export.body_limits import body_limits, slip_gains
 from slipwise.export.learned_number import LearnedNumbers
-from slipwise.export.measured_limits import Limit, MeasuredLimits
+from slipwise.export.measured_limits import MeasuredLimits, Quantity
 from slipwise.export.options import ExportOptions
 from slipwise.export.parameter_file import Entry, Kept, ParameterFile, for_release
 from slipwise.export.reference_drive import (
@@ -18,7 +17,6 @@ from slipwise.export.reference_drive import (
     slip_density,
 )
 from slipwise.export.ros_tables import ROBOT_LOCALIZATION
-from slipwise.models.body_gains import body_twists
 from slipwise.models.model import Model
 
 FREQUENCY = 30.0  # Hz, the filter's default
@@ -160,13 +158,10 @@ def _stamped(stamped: bool | None) -> Entry | Kept:
 
 def _accelerations(model: Model, numbers: LearnedNumbers, axes: tuple[_Axis, _Axis]) -> list[Entry]:
     """Return how quickly the robot may follow in the filter: the drive's limit, or as its gains let it."""
-    actuator, span = actuator_of(model), model.content.range
-    slip = slip_gains(numbers, body_twists(model))
-    behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
-    measured = MeasuredLimits(model, body_limits(model.limits_section, behind, numbers), numbers)
+    span, measured = model.content.range, MeasuredLimits(model, numbers)
     unclipped = [
-        Limit(numbers.exactly(axis.gain * abs(gain.value) * (max(high, 0.0) - min(low, 0.0))), UNCLIPPED)
-        for axis, gain, (low, high) in zip(axes, behind, (span.speed, span.yaw_rate), strict=True)
+        Quantity(numbers.exactly(axis.gain * abs(gain.value) * (max(high, 0.0) - min(low, 0.0))), UNCLIPPED)
+        for axis, gain, (low, high) in zip(axes, measured.behind, (span.speed, span.yaw_rate), strict=True)
     ]
     found = {
         "acceleration_limits": (measured.acceleration(), measured.yaw_acceleration()),

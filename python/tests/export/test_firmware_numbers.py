@@ -10,8 +10,9 @@ from sample_models import Made, make_model, named
 
 from slipwise import _core
 from slipwise.export import ExportOptions
-from slipwise.export.firmware_numbers import FirmwareNumbers, Quantity, is_left
+from slipwise.export.firmware_numbers import FirmwareNumbers, is_left
 from slipwise.export.firmware_table import ARDUPILOT, PX4
+from slipwise.export.measured_limits import Quantity
 
 QUANTITIES = sorted({parameter.quantity for table in (PX4, ARDUPILOT) for parameter in table.parameters})
 MADE = named("edd-2", ang__w=-0.4)
