@@ -8,10 +8,10 @@ from collections.abc import Iterable
 
 from slipwise.live.outputs import Output
 from slipwise.live.samples import Sample
-from slipwise.live.transport import OnSample
+from slipwise.live.transport import OnSample, Transport
 
 
-class Feed:
+class Feed(Transport):
     """Delivers samples one after the other, as fast as they come and the node takes them.
 
     Args:
@@ -32,10 +32,6 @@ class Feed:
     def publish(self, output: Output) -> None:
         """Has no listener."""
 
-    def notices(self) -> list[str]:
-        """Nothing to say."""
-        return []
-
     @property
     def finished(self) -> bool:
         """Whether all samples were delivered.
@@ -46,16 +42,6 @@ class Feed:
         if self._done.is_set() and self._failure is not None:
             raise self._failure
         return self._done.is_set()
-
-    @property
-    def wheels(self) -> bool:
-        """Unknown."""
-        return False
-
-    @property
-    def clocks_compared(self) -> bool:
-        """Not compared: samples arrive when they are asked for."""
-        return False
 
     def close(self) -> None:
         """Stop where it is."""
@@ -70,5 +56,5 @@ class Feed:
                     return
                 on_sample(sample)
         except Exception as problem:  # the node's thread raises it
-            self._failure = problem
+            self._failure = None if self._stopped.is_set() else problem
         self._done.set()

@@ -9,7 +9,7 @@ from dataclasses import replace
 from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.sloping_ground import takes_ground_for_level
-from slipwise.live.clock_watch import Clock, ClockWatch
+from slipwise.live.clock_watch import ClockWatch
 from slipwise.live.command_ends import CommandEnds
 from slipwise.live.command_stops import SAID_EVERY, LiveCommandStops
 from slipwise.live.gates import Gates
@@ -98,11 +98,11 @@ class Intake:
 
     def take(self, sample: Stamped) -> None:
         """Take one sample in the order in which it came."""
-        clock, taken = self._clock.take(sample)
+        taken = self._clock.take(sample)
         if self._clock.dropped:
             self._said.count("a stamp that no other agrees with", number=self._clock.dropped)
             self._clock.dropped = 0
-        if clock is Clock.SET_BACK:
+        if self._clock.set_back_by is not None:
             self._said.note(self._clock.newest, ClockSetBack.by(self._clock.set_back_by).sentence)
             self._said.count("the clock was set back")
             self.surfaces.start_run(f"after the clock was set at {self._clock.newest:.3f} s")

@@ -10,19 +10,19 @@ from typing import IO
 
 from slipwise.errors import LogError
 from slipwise.live.coming import ComingLines, ComingSoon
+from slipwise.live.feed import Feed
 from slipwise.live.lines import MOST_BYTES, LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.result_lines import ResultLines, Writable
 from slipwise.live.samples import Sample, Unusable
 from slipwise.live.stoppable_reader import StoppableReader
-from slipwise.live.transport import OnSample
 from slipwise.logs.options import LogOptions
 
 ENDS_WITHIN = 1.0  # s, of a thread that may still hand over a sample
 _AS_IT_IS = LogOptions()
 
 
-class Pipe:
+class Pipe(Feed):
     """Reads lines until the stream ends.
 
     Args:
@@ -40,26 +40,18 @@ class Pipe:
         self._stream, self._lines = lines, bounded_lines(lines)
         self._results = None if results is None else ResultLines(results)
         self._reader = LineReader(options)
-        self._samples = self._read_all()
-        self._looked_at: list[Sample] = []
-        self._done, self._stopped = threading.Event(), threading.Event()
-        self._failure: Exception | None = None
-        self._thread: threading.Thread | None = None
+        self._read, self._looked_at = self._read_all(), list[Sample]()
+        super().__init__(itertools.chain(self._looked_at, self._read))
 
     def look(self) -> ComingLines:
         """Wait for the first samples, and return what will come; `subscribe` delivers them all the same."""
         soon = ComingSoon()
-        for sample in self._samples:
+        for sample in self._read:
             self._looked_at.append(sample)
             soon.take([sample])
             if soon.enough:
                 break
         return soon.found(self._reader.columns)
-
-    def subscribe(self, on_sample: OnSample) -> None:
-        """Begin to read."""
-        self._thread = threading.Thread(target=self._read, args=(on_sample,), name="lines", daemon=True)
-        self._thread.start()
 
     def publish(self, output: Output) -> None:
         """Write a result as a line; a reader that went away is no error."""
@@ -78,19 +70,10 @@ class Pipe:
         Raises:
             LogError: it cannot be read further.
         """
-        if self._done.is_set() and self._failure is not None:
-            raise LogError(f"the lines cannot be read further: {self._failure}") from self._failure
-        return self._done.is_set()
-
-    @property
-    def wheels(self) -> bool:
-        """Unknown before the first line."""
-        return False
-
-    @property
-    def clocks_compared(self) -> bool:
-        """Not compared: whoever writes the lines has put the streams in order."""
-        return False
+        try:
+            return super().finished
+        except Exception as problem:
+            raise LogError(f"the lines cannot be read further: {problem}") from problem
 
     def close(self) -> None:
         """Take no more lines; the thread ends with the stream, where that can be stopped now."""
@@ -101,16 +84,6 @@ class Pipe:
                 self._thread.join(ENDS_WITHIN)
         if self._results is not None:
             self._results.close()
-
-    def _read(self, on_sample: OnSample) -> None:
-        try:
-            for sample in itertools.chain(self._looked_at, self._samples):
-                if self._stopped.is_set():
-                    return
-                on_sample(sample)
-        except Exception as problem:  # the node's thread raises it
-            self._failure = None if self._stopped.is_set() else problem
-        self._done.set()
 
     def _read_all(self) -> Iterator[Sample]:
         for number, line in enumerate(self._lines, start=1):

@@ -33,7 +33,7 @@ from slipwise.live.ros_samples import (
 )
 from slipwise.live.samples import Override, Pose, Request, SurfaceCue, Unusable
 from slipwise.live.stamps import Stamps
-from slipwise.live.transport import OnSample
+from slipwise.live.transport import OnSample, Transport
 from slipwise.live.typed_messages import COMMANDS, asked_of
 from slipwise.live.wires.ros_types import OWN_PACKAGE, ros_types
 from slipwise.live.wires.wire import OnMessage, RosWire
@@ -60,7 +60,7 @@ class CueTopics:
 _NO_CUES = CueTopics()
 
 
-class RosTransport:
+class RosTransport(Transport):
     """Reads the topics of the roles, publishes below the node's name, sets parameters of other nodes.
 
     Args:
@@ -186,11 +186,6 @@ class RosTransport:
             while True:
                 found.append(self._notices.get_nowait())
         return found
-
-    @property
-    def finished(self) -> bool:
-        """Never: a robot may go on."""
-        return False
 
     @property
     def wheels(self) -> bool:

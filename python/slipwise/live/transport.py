@@ -13,7 +13,10 @@ OnSample = Callable[[Sample], None]
 
 
 class Transport(Protocol):
-    """Callbacks may come from any thread; the node orders them."""
+    """Callbacks may come from any thread; the node orders them.
+
+    What a transport does not say itself is said here: more may come, and nothing is known of it.
+    """
 
     def subscribe(self, on_sample: OnSample) -> None:
         """Begin to deliver samples.
@@ -27,6 +30,7 @@ class Transport(Protocol):
 
     def notices(self) -> list[str]:
         """Return what is to be said since the last call, such as a topic on which nothing comes."""
+        return []
 
     @property
     def finished(self) -> bool:
@@ -35,14 +39,17 @@ class Transport(Protocol):
         Raises:
             SlipwiseError: what brings the samples failed for good.
         """
+        return False
 
     @property
     def wheels(self) -> bool:
         """Whether wheel speeds are known to come, beside commands if there are some."""
+        return False
 
     @property
     def clocks_compared(self) -> bool:
         """Whether the stamps of each stream were compared with the times at which they arrived."""
+        return False
 
     def close(self) -> None:
         """Stop; may be called twice."""

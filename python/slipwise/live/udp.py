@@ -18,7 +18,7 @@ from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.pipe import samples_in
 from slipwise.live.samples import Sample, Unusable
-from slipwise.live.transport import OnSample
+from slipwise.live.transport import OnSample, Transport
 from slipwise.logs.options import LogOptions
 
 DEFAULT_ADDRESS = "127.0.0.1:7447"
@@ -52,7 +52,7 @@ def listening_socket(address: str) -> socket.socket:
     return found
 
 
-class Udp:
+class Udp(Transport):
     """Listens on loopback by default.
 
     Args:
@@ -112,21 +112,6 @@ class Udp:
         """Return what was worked out of lines; what is wrong with packets is among the samples."""
         notes, self._reader.notes = self._reader.notes, []
         return notes
-
-    @property
-    def finished(self) -> bool:
-        """Never: a packet may still come."""
-        return False
-
-    @property
-    def wheels(self) -> bool:
-        """Unknown before the first packet."""
-        return False
-
-    @property
-    def clocks_compared(self) -> bool:
-        """Not compared: whoever writes the lines has put the streams in order."""
-        return False
 
     def close(self) -> None:
         """Stop listening."""

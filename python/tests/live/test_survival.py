@@ -31,6 +31,7 @@ from slipwise.live.pipe import Pipe, bounded_lines
 from slipwise.live.samples import Request, Sample
 from slipwise.live.transport import OnSample
 from slipwise.live.udp import LOST, Udp
+from slipwise.live.watch.watcher import Watcher
 
 HEADER = b"t,odo_v,odo_omega,x,y,yaw,roll,pitch\n"
 HOSTILE = {
@@ -48,7 +49,7 @@ HOSTILE = {
 }
 
 
-class Kept:
+class Kept(Watcher):
     """A watcher that keeps what the node gives."""
 
     def __init__(self) -> None:
@@ -56,9 +57,6 @@ class Kept:
 
     def take(self, output: Output) -> None:
         self.outputs.append(output)
-
-    def notices(self) -> list[str]:
-        return []
 
     def close(self) -> None:
         pass

@@ -8,7 +8,7 @@ import time
 
 from slipwise.errors import ModelError, SettingsError, SlipwiseError
 from slipwise.live.outputs import ModelText, Output
-from slipwise.live.transport import OnSample
+from slipwise.live.transport import OnSample, Transport
 from slipwise.models import parse_model
 from slipwise.planning import learned_motions
 from slipwise_sim.demo.closed_loop import vendor
@@ -18,7 +18,7 @@ from slipwise_sim.demo.slalom_drive import SlalomDrive
 LATE = 1.0  # [s] behind its clock, from which on the robot says that it does not keep up
 
 
-class SimulatedRobot:
+class SimulatedRobot(Transport):
     """A transport whose other end is a simulated robot with an MPPI controller.
 
     Until a model comes whose verdict is good, the controller drives by a vendor's constants.
@@ -79,11 +79,6 @@ class SimulatedRobot:
     def wheels(self) -> bool:
         """They come beside commands."""
         return True
-
-    @property
-    def clocks_compared(self) -> bool:
-        """Not compared: samples arrive when they are asked for."""
-        return False
 
     def close(self) -> None:
         """Stop where it is."""

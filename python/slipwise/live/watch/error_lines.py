@@ -9,9 +9,10 @@ from slipwise.live.outputs import Note, Output
 from slipwise.live.watch.output_thread import OutputThread
 from slipwise.live.watch.status_texts import stamp_text
 from slipwise.live.watch.terminal_screen import clean
+from slipwise.live.watch.watcher import Watcher
 
 
-class ErrorLines:
+class ErrorLines(Watcher):
     """A line for every note that is an error."""
 
     def __init__(self, write: Callable[[str], None]) -> None:
@@ -23,10 +24,6 @@ class ErrorLines:
         """Print an output, if it is an error."""
         if isinstance(output, Note) and output.error:
             self._thread.put(output)
-
-    def notices(self) -> list[str]:
-        """Not shown."""
-        return []
 
     def close(self) -> None:
         """Print what waits."""

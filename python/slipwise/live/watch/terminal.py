@@ -38,7 +38,7 @@ def terminal_watcher(
     return PlainLines(write, headlines=headlines)
 
 
-class TerminalScreen:
+class TerminalScreen(Watcher):
     """The whole terminal shows the state while the node runs; the last of it stays when it ends."""
 
     def __init__(self, console: Console, *, headlines: Sequence[str] = ()) -> None:
@@ -62,10 +62,6 @@ class TerminalScreen:
         """Show an output at the next refresh."""
         self._history.take(output)
 
-    def notices(self) -> list[str]:
-        """Nothing goes wrong here that the node would have to say."""
-        return []
-
     def close(self) -> None:
         """Give the terminal back and leave the last state in it."""
         if not self._open:
@@ -79,7 +75,7 @@ class TerminalScreen:
         return screen(self._history.seen(), self._console.size, self._headlines)
 
 
-class PlainLines:
+class PlainLines(Watcher):
     """A line for every note and one of state every 10 s, such as for a journal."""
 
     def __init__(
@@ -102,10 +98,6 @@ class PlainLines:
         """Print an output, if it is one that is printed."""
         if isinstance(output, Note | Status):
             self._thread.put(output)
-
-    def notices(self) -> list[str]:
-        """An error here means that the terminal is gone, so there is no place to say it."""
-        return []
 
     def close(self) -> None:
         """Print the last state, if it was not."""

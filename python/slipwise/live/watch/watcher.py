@@ -16,6 +16,7 @@ class Watcher(Protocol):
 
     def notices(self) -> list[str]:
         """Return what is to be said since the last call, such as that a disk is full."""
+        return []
 
     def close(self) -> None:
         """Stop; may be called twice."""

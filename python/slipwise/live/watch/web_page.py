@@ -16,6 +16,7 @@ from slipwise.errors import OutputError, SettingsError
 from slipwise.extras import to_install
 from slipwise.live.outputs import Output
 from slipwise.live.watch.history import History
+from slipwise.live.watch.watcher import Watcher
 
 if TYPE_CHECKING:
     from uvicorn import Server
@@ -24,7 +25,7 @@ _START = 10.0  # s, until a server that does not start counts as broken
 _TOKEN_BYTES = 24
 
 
-class WebPage:
+class WebPage(Watcher):
     """The page, and the server behind it in a thread of its own.
 
     Beyond this machine a token is asked for; `url` has it in its query.
@@ -75,10 +76,6 @@ class WebPage:
     def take(self, output: Output) -> None:
         """Show an output."""
         self._history.take(output)
-
-    def notices(self) -> list[str]:
-        """Nothing goes wrong here that the node would have to say."""
-        return []
 
     def close(self) -> None:
         """Stop serving; pages that are open say that the connection is lost."""
