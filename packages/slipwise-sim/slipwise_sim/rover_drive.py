@@ -22,6 +22,7 @@ Floats = NDArray[np.float64]
 
 PERIOD = 0.05  # s between readings
 SETTLING_TIME = 1.0  # s at rest
+_POSE_NOISE = (0.004, 0.003)  # m and rad, standard deviations
 _CHANNELS = ("lon", "lat", "ang")
 _LEG = (1.5, 3.0)  # s, for which a command is held
 _SPEEDS = (0.45, 0.3, 0.5)  # m/s, m/s, rad/s: the fastest that is commanded
@@ -45,10 +46,10 @@ class RoverDrive:
             vehicle, wheel_names(vehicle, list(self.readings)), self.readings, self.truth.t
         )
 
-    def log(self, *, pose_noise: tuple[float, float] = (0.004, 0.003), seed: int = 1) -> Log:
-        """Return commands, wheels and noisy poses (standard deviations of x and y [m], and of yaw [rad])."""
+    def log(self, *, seed: int = 1) -> Log:
+        """Return commands, wheels and noisy poses."""
         truth, found = self.truth, self.wheel_twists()
-        rng, (std, yaw_std) = np.random.default_rng(seed), pose_noise
+        rng, (std, yaw_std) = np.random.default_rng(seed), _POSE_NOISE
         x, y = (values + rng.normal(0.0, std, len(values)) for values in (truth.x, truth.y))
         yaw = truth.yaw + rng.normal(0.0, yaw_std, len(truth.yaw))
         poses = Poses(t=truth.t, x=x, y=y, yaw=yaw, frame=np.zeros(len(x), np.int64))

@@ -36,7 +36,6 @@ class CausalPass(Generic[UpdateT]):
         observer: Callable[[int, UpdateT, Posterior], None] | None = None,
         *,
         pace: WindowSet | None = None,
-        first: int = 0,
     ) -> None:
         """Start before the first window.
 
@@ -45,11 +44,10 @@ class CausalPass(Generic[UpdateT]):
             windows: what it learns, of any length, overlapping or not.
             observer: gets each window's index, its update, and the posterior after it.
             pace: posteriors are requested by counts of these windows, where not of `windows` themselves.
-            first: windows before this one are passed over.
         """
         self._learner, self._windows, self._observer = learner, windows, observer
         self._passed = None if pace is None else windows.passed(pace)
-        self._learned = first
+        self._learned = 0
 
     @property
     def learned(self) -> int:

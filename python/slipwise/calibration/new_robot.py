@@ -17,7 +17,7 @@ from slipwise.excitation import Knowledge
 from slipwise.models.fleet_prior import StartPrior
 
 
-def new_robot_knowledge(prior: KnownFleet, settings: Settings | None = None) -> Knowledge:
+def new_robot_knowledge(prior: KnownFleet) -> Knowledge:
     """Return mean and covariance of a robot of the fleet before its first log, over the terms of all bases.
 
     It is what a learner that begins with the prior knows at first: the weighted mean of the bases, with what
@@ -25,7 +25,6 @@ def new_robot_knowledge(prior: KnownFleet, settings: Settings | None = None) -> 
 
     Args:
         prior: of the robot's type, of commands.
-        settings: of the learning, with the bases that the fleet was learned with.
 
     Raises:
         ModelError: the prior is of wheel speeds, of other bases, or of too few robots.
@@ -37,18 +36,16 @@ def new_robot_knowledge(prior: KnownFleet, settings: Settings | None = None) -> 
             where=str(prior.path),
             advice="run `slipwise fleet` on logs with commands",
         )
-    learner = new_learner((), start.input, settings or Settings(), JUDGING_HORIZONS)
+    learner = new_learner((), start.input, Settings(), JUDGING_HORIZONS)
     wheels = start.structure == "cascaded"  # without them, the learner would not explain motion so
     begin_from(learner, start, start.input, wheels=wheels, where=str(prior.path))
     posterior = learner.model().motion
     covariance = np.array(posterior.estimate.covariance)
     mean = np.array(posterior.estimate.mean)
-    return Knowledge(posterior.model, mean, covariance, covariance, kinds=robots_by_basis(prior, settings))
+    return Knowledge(posterior.model, mean, covariance, covariance, kinds=robots_by_basis(prior))
 
 
-def robots_by_basis(
-    prior: KnownFleet, settings: Settings | None = None
-) -> tuple[tuple[float, Knowledge], ...]:
+def robots_by_basis(prior: KnownFleet) -> tuple[tuple[float, Knowledge], ...]:
     """Return what the prior says of a robot that slips by one basis alone, with the basis's weight.
 
     Robots drawn of these, a basis by its weight and then its parameters, are those that the file describes.
@@ -57,7 +54,7 @@ def robots_by_basis(
         ModelError: as for `new_robot_knowledge`.
     """
     start = start_of(prior)
-    learner = new_learner((), start.input, settings or Settings(), JUDGING_HORIZONS)
+    learner = new_learner((), start.input, Settings(), JUDGING_HORIZONS)
     hypotheses = learner.settings.hypotheses
     found = []
     for basis in hypotheses.bases:

@@ -133,17 +133,14 @@ class Settings(Section):
         branches.follow = self.change.branches
         return branches
 
-    def choosing(self, basis: str | None, estimator: str | None, body_force: str | None = None) -> Settings:
-        """Return these settings with another basis or estimator, or a force in a frame, where one is given.
+    def choosing(self, basis: str | None, estimator: str | None) -> Settings:
+        """Return these settings with another basis or estimator, where one is given.
 
         Raises:
-            SettingsError: there is no such estimator or frame.
+            SettingsError: there is no such estimator.
         """
         given = {"basis": basis, "estimator": estimator}
-        content = self.model_dump() | {key: name for key, name in given.items() if name}
-        if body_force:
-            content["body_force"]["frame"] = body_force
-        chosen = make_settings(content)
+        chosen = make_settings(self.model_dump() | {key: name for key, name in given.items() if name})
         return chosen.model_copy(update={"live": self.live})
 
     def bases(self) -> list[_core.Basis]:

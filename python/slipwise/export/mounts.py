@@ -17,6 +17,7 @@ from slipwise.models.sensor_look import sensor_look
 from slipwise.number_text import estimate_text
 
 Estimate = tuple[float, float]  # value and standard deviation
+_FRAME = "pose_sensor"  # of a sensor without a name
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Mounted:
         return f"{self.name} {', '.join(parts)}" if parts else ""
 
 
-def mount_of_look(model: Model, *, frame: str = "pose_sensor") -> Mounted:
+def mount_of_look(model: Model) -> Mounted:
     """Return where the pose sensor sits on a robot that does not slip sideways, from what looks like that.
 
     Raises:
@@ -72,7 +73,7 @@ def mount_of_look(model: Model, *, frame: str = "pose_sensor") -> Mounted:
             advice="drive arcs of both hands, and turns in place",
         )
     x, y, yaw = known
-    return Mounted(frame, x, y, yaw, first=True)
+    return Mounted(_FRAME, x, y, yaw, first=True)
 
 
 def mounts_text(mounts: Sequence[Mounted], origin: Sequence[str]) -> str:
@@ -94,7 +95,7 @@ def _pose(mount: Mounted) -> tuple[float, float, float]:
 
 def frame_name(name: str) -> str:
     """Return a name of a frame: that of a topic without what frames cannot have."""
-    return re.sub(r"[^A-Za-z0-9_]+", "_", name).strip("_") or "pose_sensor"
+    return re.sub(r"[^A-Za-z0-9_]+", "_", name).strip("_") or _FRAME
 
 
 def _transform(mount: Mounted) -> str:

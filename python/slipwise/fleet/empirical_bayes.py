@@ -40,7 +40,6 @@ def fleet_prior(
     covariances: Floats,
     *,
     dof: float | None = None,
-    start: Floats | None = None,
     guess: Floats | None = None,
 ) -> FleetPrior:
     """Fit mean and covariance of robots by expectation maximisation of the marginal likelihood.
@@ -49,7 +48,6 @@ def fleet_prior(
         estimates: [N, P] of at least two robots.
         covariances: [N, P, P] of the estimates.
         dof: degrees of freedom of a Student t of the robots, against one odd robot; None: they are normal.
-        start: [P, P] where the search for the robots' covariance begins; by default at that of the estimates.
         guess: [P] of the robots' variances, which counts as `GUESSED` robots; then these have one variance
             per parameter and no covariance, since few robots tell no more.
 
@@ -62,9 +60,7 @@ def fleet_prior(
     scale = np.sqrt(np.einsum("nii->ni", covariances).min(axis=0) + 1e-300)
     y, s = estimates / scale, covariances / np.outer(scale, scale)
     guessed = None if guess is None else guess / scale**2
-    first = np.atleast_2d(np.cov(y.T)) if start is None else start / np.outer(scale, scale)
-    if guessed is not None:
-        first = np.diag(guessed)
+    first = np.atleast_2d(np.cov(y.T)) if guessed is None else np.diag(guessed)
     between = first + LEAST * np.eye(size)
     weight = np.ones(count)
     for _ in range(ITERATIONS):

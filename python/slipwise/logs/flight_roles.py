@@ -13,6 +13,8 @@ from slipwise.logs.log import Floats
 
 Columns = Mapping[str, Floats]
 
+_NEAR = 0.5  # s from an angle, within which another time has one
+
 
 @dataclass(frozen=True)
 class FlightMessages:
@@ -50,15 +52,15 @@ def held(t: Floats, other_t: Floats, values: Floats) -> Floats:
     return np.where(index >= 0, values[np.clip(index, 0, None)], np.nan)
 
 
-def between(t: Floats, other_t: Floats, angles: Floats, *, most: float = 0.5) -> Floats:
-    """Return angles [M] in rad at times [N], interpolated; NaN where none is within `most` seconds."""
+def between(t: Floats, other_t: Floats, angles: Floats) -> Floats:
+    """Return angles [M] in rad at times [N], interpolated; NaN where none is within half a second."""
     finite = np.isfinite(angles) & np.isfinite(other_t)
     other_t, angles = other_t[finite], angles[finite]
     if len(other_t) == 0:
         return np.full(len(t), np.nan)
     after = np.clip(np.searchsorted(other_t, t), 0, len(other_t) - 1)
     before = np.maximum(after - 1, 0)
-    near = np.minimum(np.abs(other_t[after] - t), np.abs(other_t[before] - t)) <= most
+    near = np.minimum(np.abs(other_t[after] - t), np.abs(other_t[before] - t)) <= _NEAR
     found = np.interp(t, other_t, np.unwrap(angles))
     return np.where(near, np.arctan2(np.sin(found), np.cos(found)), np.nan)
 

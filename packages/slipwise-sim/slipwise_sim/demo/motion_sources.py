@@ -58,13 +58,12 @@ class LiveMotion:
     Args:
         learner: with nothing learned, or loaded from its saved state.
         until: what to drive through before the learner has a model that its verdict calls good.
-        refresh: time between two models [s].
     """
 
-    def __init__(self, learner: MotionLearner, until: Sequence[Motion], *, refresh: float = REFRESH) -> None:
+    def __init__(self, learner: MotionLearner, until: Sequence[Motion]) -> None:
         self.learner = learner
         self._until: list[Motion] | None = list(until)
-        self._refresh, self._due, self._now = refresh, 0.0, 0.0
+        self._due, self._now = 0.0, 0.0
         self._learned = True  # a loaded one may have a model at once
         learner.start_run("slalom")
 
@@ -78,7 +77,7 @@ class LiveMotion:
         self._learned |= any(event.kind in _NEWS for event in self.learner.events())
         if self._now < self._due or not self._learned:
             return first
-        self._due, self._learned = self._now + self._refresh, False
+        self._due, self._learned = self._now + REFRESH, False
         model = self._model()
         return first if model is None else learned_motions(model)
 
