@@ -53,7 +53,7 @@ def written_place(path: Path) -> Path:
     return place
 
 
-def write_whole(path: Path, write: Callable[[Path], None]) -> None:
+def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` fill a file in a hidden folder beside `path`, then move it into place in one step.
 
     A symbolic link stays, and the file that it leads to is written. A file that is there keeps its mode and,
@@ -92,17 +92,13 @@ def write_text_whole(path: Path, text: str) -> None:
     Raises:
         OutputError: the file cannot be written.
     """
-    write_whole(path, lambda temporary: _write_text(temporary, text))
+    write_whole(path, lambda temporary: temporary.write_text(text, encoding="utf-8"))
 
 
 def sha256_of(path: Path) -> str:
     """Return the SHA-256 of the file's bytes as hexadecimal digits."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _write_text(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
 
 
 def _take_after(temporary: Path, place: Path) -> None:

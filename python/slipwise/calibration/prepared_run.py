@@ -130,7 +130,8 @@ def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
         wheels = run.wheels if input_name == "command" else None
         drive.append(PreparedRun(index, run, inputs, wheels, input_name))
     if not drive:
-        raise LogError(_nothing_to_use(log, input_name), where=_where(log), advice=_advice(log, input_name))
+        where = ", ".join(source.path for source in log.sources[:3])
+        raise LogError(_nothing_to_use(log, input_name), where=where, advice=_advice(log, input_name))
     return tuple(_in_time(drive))
 
 
@@ -271,7 +272,3 @@ def input_names(log: Log) -> tuple[str, ...]:
     return tuple(
         name for name, series in found.items() if any(inputs is not None and len(inputs) for inputs in series)
     )
-
-
-def _where(log: Log) -> str:
-    return ", ".join(source.path for source in log.sources[:3])

@@ -192,7 +192,9 @@ class _Search:
         moves: list[Move] = []
         left = self.options.groups if len(self._commands) else 0
         while left:
-            scores = self._scores_of_two(known) if left > 1 else self._scores_of_one(known)
+            scores = (
+                self._scores_of_two(known) if left > 1 else self.judge.scores(known + self._informed_by_four)
+            )
             ranked = np.argsort(scores.ravel(), kind="stable")[_tried_ranks(scores.size)]
             places = np.column_stack(np.unravel_index(ranked, scores.shape))
             taken = self._first_inside(moves, places, room)
@@ -208,9 +210,6 @@ class _Search:
         """What each of the four moves with this command tells, from rest."""
         moves = figure_of([command], ORDERS[0], self.options.hold, self.options.pause)
         return [information(move_jacobians(knowledge, [move])[0], self.options.std) for move in moves]
-
-    def _scores_of_one(self, known: Floats) -> Floats:
-        return self.judge.scores(known + self._informed_by_four)
 
     def _scores_of_two(self, known: Floats) -> Floats:
         """Return the scores [N, N] of figures of two commands, after five moves and after all eight."""

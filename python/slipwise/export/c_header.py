@@ -220,11 +220,8 @@ def _coefficients(basis: _core.Basis) -> list[float]:
     return [1.0 if abs(value - 1.0) < 1e-12 else value for value in plain]
 
 
-def _curvature() -> _core.Basis:
-    return _core.Basis("curvature", ["kappa"], [], [])
-
-
 def _regular_curvature() -> float:
     """Return v0^2 of kappa = w V / (V^2 + v0^2) [m^2/s^2], as the core has it."""
-    slow = float(_curvature().features(_core.SlipState(_PROBE, 1.0, 0.0, 0.0))[0])
+    curvature = _core.Basis("curvature", ["kappa"], [], [])
+    slow = float(curvature.features(_core.SlipState(_PROBE, 1.0, 0.0, 0.0))[0])
     return _PROBE / slow - _PROBE**2

@@ -100,7 +100,7 @@ class Cache:
                 self.model.unlink(missing_ok=True)
         head = json.dumps({"key": asdict(self._key), "valid": valid is not None}).encode()
         body = _core.sealed(len(head).to_bytes(_LENGTH_BYTES, "little") + head + saved)
-        write_whole(self.state, lambda place: _write(place, body))
+        write_whole(self.state, lambda place: place.write_bytes(body))
         self.works()
 
     def load(self) -> Remembered:
@@ -209,7 +209,3 @@ def _check_judged(learner: MotionLearner) -> None:
     """Raise whatever a judgement of what was learned raises."""
     if learner.learned:
         learner.judged_model(limits=False)
-
-
-def _write(place: Path, body: bytes) -> None:
-    place.write_bytes(body)

@@ -176,8 +176,4 @@ def _missing(topics: list[Topic], options: LogOptions) -> str:
     problem = weigh_topics(topics, options).problem
     if problem is None or not problem.what.startswith(NOTHING_YET):
         return ""
-    return _kinds(topics)
-
-
-def _kinds(topics: list[Topic]) -> str:
     return "pose topic and a command or wheel topic beside it" if topics else "topics of a robot"

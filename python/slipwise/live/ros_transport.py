@@ -149,7 +149,8 @@ class RosTransport(Transport):
                 )
 
     def _wanted(self, output: Output, topic: str) -> bool:
-        return self._heard(topic) and (not isinstance(output, Status) or self._is_news(output))
+        heard = self._listeners.on(self._full(topic))
+        return heard and (not isinstance(output, Status) or self._is_news(output))
 
     def _take_own(self, topic: str, kind: str, convert: ToSample, on_sample: OnSample) -> None:
         """Subscribe to a type of slipwise_msgs where this ROS has it."""
@@ -203,9 +204,6 @@ class RosTransport(Transport):
             self._closed = True
             self._calls.put(None)
             self._wire.close()
-
-    def _heard(self, topic: str) -> bool:
-        return self._listeners.on(self._full(topic))
 
     def _full(self, topic: str) -> str:
         return f"/{self._name}/{topic}"

@@ -57,16 +57,9 @@ def judged(model: Model, judgement: Judgement) -> tuple[Validity, str]:
     verdict = model.content.verdict
     if verdict.good:
         return "estimated", verdict.sentence
-    unknown = judgement.too_short or not (judgement.worse or _untrue(judgement))
+    untrue = judgement.consistency is not None and judgement.consistency.untrue
+    unknown = judgement.too_short or not (judgement.worse or untrue)
     return ("unestimated" if unknown and not verdict.contradictions else "invalid"), verdict.sentence
-
-
-def _not_shown(waits: str) -> str:
-    return f"poses and inputs are compared first: {waits}"
-
-
-def _untrue(judgement: Judgement) -> bool:
-    return judgement.consistency is not None and judgement.consistency.untrue
 
 
 class ModelValidity:
@@ -95,7 +88,7 @@ class ModelValidity:
             self.contradicted(self.why)
             return
         if waits and now == "estimated":
-            now, self.why = "unestimated", _not_shown(waits)
+            now, self.why = "unestimated", f"poses and inputs are compared first: {waits}"
         self._whole.take(now)
         for parameter in model.content.parameters:
             each: Validity = "unestimated"

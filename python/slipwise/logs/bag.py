@@ -29,7 +29,7 @@ from slipwise.logs.foxglove_file import open_bag
 from slipwise.logs.gyro import with_gyro
 from slipwise.logs.joints import SideMotion, sides_text
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Ints, Log, Run, Source, empty_poses
+from slipwise.logs.log import Inputs, Ints, Log, Run, Source, empty_poses
 from slipwise.logs.messages import (
     COMMAND_VALUES,
     FORCE_VALUES,
@@ -256,7 +256,7 @@ def _runs(
         poses = fix_stream(context, samples["pose"], samples.get("imu"), inputs)
     elif roles.pose is not None and len(samples["pose"].values):
         poses = with_tilts(context, pose_stream(context, samples["pose"], inputs), samples.get("imu"))
-    others = _other_streams(roles, samples, context, (wheels, commands))
+    others = _other_streams(roles, samples, context, inputs)
     runs = _split(path, collected, (commands, wheels, poses), context.tally)
     if roles.gyro is not None and (poses is None or poses.course):
         runs = with_gyro(runs, gyro_stream(context, samples["gyro"]), collected.starts)
@@ -267,18 +267,14 @@ def _runs(
 
 
 def _other_streams(
-    roles: Roles,
-    samples: dict[str, Samples],
-    context: BagContext,
-    inputs: tuple[RawStream | None, RawStream | None],
+    roles: Roles, samples: dict[str, Samples], context: BagContext, inputs: Inputs | None
 ) -> dict[str, RawStream]:
     """Return what further sources measured, by their topics; satellite fixes as positions."""
-    first = next((to_inputs(stream, Tally()) for stream in inputs if stream is not None), None)
     found = {}
     for topic in roles.others:
         own = samples[f"{_OTHER}{topic.name}"]
         if topic.type == NAV_SAT_FIX:
-            found[topic.name] = fix_stream(context, own, None, first)
+            found[topic.name] = fix_stream(context, own, None, inputs)
         else:
             found[topic.name] = pose_stream(context, own)
     return found

@@ -38,7 +38,8 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
     where = log.sources[0].path if log.sources else ""
     log = levelled(log)
     _check_forward(log, where)
-    _check_seconds(log, where)
+    steps = [np.empty(0), *(np.diff(run.poses.t) for run in log.runs)]
+    _refuse(NotInSeconds.by(np.concatenate(steps)), where)
     rows = measured_rows(log.runs, unknown_after)
     agreed = {name: agreement(motion_windows(rows, name)) for name in ("command", "wheel")}
     for name, own in agreed.items():
@@ -49,8 +50,8 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
     if _heads_along_course(runs, unknown_after):
         log = as_positions(log)
         runs, found = _smoothed(log, unknown_after)
-    steps = sum(max(len(run.poses) - 1, 0) for run in log.runs)
-    _refuse(UnreachablePoses.of(sum(entry.count for entry in found), steps), where)
+    jumping, count = sum(entry.count for entry in found), sum(max(len(run.poses) - 1, 0) for run in log.runs)
+    _refuse(UnreachablePoses.of(jumping, count), where)
     return replace(log, runs=runs, left_out=log.left_out + found)
 
 
@@ -86,13 +87,6 @@ def _check_forward(log: Log, where: str) -> None:
         what = f"stamps do not go forward in {rejected} of {kept + rejected} poses"
         advice = "give each measurement its own time, in seconds"
         raise RefusedLogError(NotInSeconds.found(what, advice, evidence=rejected), where)
-
-
-def _check_seconds(log: Log, where: str) -> None:
-    """Refuse stamps that are not in seconds."""
-    _refuse(
-        NotInSeconds.by(np.concatenate([np.empty(0), *(np.diff(run.poses.t) for run in log.runs)])), where
-    )
 
 
 def _refuse(odd: Finding | None, where: str) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from slipwise.errors import LogError
+from slipwise.logs.options import LogOptions
 from slipwise.logs.topic_names import Names, score_of
 
 NONE = "none"  # given in place of a topic: the role stays empty
@@ -44,6 +45,11 @@ class Role:
     def option(self) -> str:
         """The option that names the topic."""
         return f"--{self.name}-topic"
+
+    def given(self, options: LogOptions) -> str | None:
+        """Return the topic that is named for it."""
+        name: str | None = getattr(options, f"{self.name}_topic")
+        return name
 
 
 def choose(live: Mapping[str, Topic], role: Role, given: str | None) -> RoleChoice:

@@ -64,7 +64,7 @@ def require_columns(table: Columns, *, poses: bool, described: bool = False, car
     names = table.names
     poses = poses and ("gyro_z" not in names or bool({"x", "y"} & set(names)))  # turns of a gyro may be all
     missing = [name for name in ("t", *(("x", "y") if poses else ())) if name not in names]
-    commands = bool({"cmd_v", "cmd_vx"} & set(names)) or (car and {*CAR} <= set(names))
+    commands = _commands_there(names, car=car)
     wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)
     driven = commands or wheels or described
     if not driven:
@@ -148,8 +148,8 @@ def _without_speed(table: Columns, options: LogOptions) -> list[str]:
     return found
 
 
-def _commands_there(names: Collection[str], options: LogOptions) -> bool:
-    return bool({"cmd_v", "cmd_vx"} & set(names)) or (options.car is not None and {*CAR} <= set(names))
+def _commands_there(names: Collection[str], *, car: bool) -> bool:
+    return bool({"cmd_v", "cmd_vx"} & set(names)) or (car and {*CAR} <= set(names))
 
 
 def commanded_by_direction(table: Columns, options: LogOptions) -> bool:
@@ -163,7 +163,7 @@ def wheel_columns(table: Columns, options: LogOptions, tally: Tally, notes: list
     if "odo_v" in names and "odo_omega" in names:
         vy = table.numbers("odo_vy", tally) if "odo_vy" in names else None
         return InputColumns(table.numbers("odo_v", tally), vy, table.numbers("odo_omega", tally))
-    commanded = _commands_there(names, options)
+    commanded = _commands_there(names, car=options.car is not None)
     if options.wheels is not None and commanded and not any(name.startswith("wheel_") for name in names):
         notes.append(f"{table.path.name}: there are no speeds of the wheels of {options.vehicle}")
         return None

@@ -169,12 +169,11 @@ def weigh_topics(
 
 def _silent(topics: Sequence[Topic], chosen: Mapping[Role, RoleChoice], options: LogOptions) -> list[Finding]:
     """Say which topics without a message would be an input that is missing."""
-    given = {_COMMAND: options.command_topic, _WHEEL: options.wheel_topic}
     many = {_COMMAND: "commands", _WHEEL: "wheel speeds"}
     return [
         SilentTopic.of(topic.name, many[role])
         for role, choice in chosen.items()
-        if choice.topic is None and choice.problem is None and given[role] != NONE
+        if choice.topic is None and choice.problem is None and role.given(options) != NONE
         for topic in topics
         if topic.count == 0
         and topic.type in role.kinds
@@ -185,9 +184,7 @@ def _silent(topics: Sequence[Topic], chosen: Mapping[Role, RoleChoice], options:
 def _others_topics(live: Mapping[str, Topic], options: LogOptions) -> dict[str, str]:
     """Return the topics of other robots, and why."""
     roles_given = {
-        "pose": options.pose_topic,
-        "command": options.command_topic,
-        "wheel": options.wheel_topic,
+        **{role.name: role.given(options) for role in (_POSE, _COMMAND, _WHEEL)},
         **{f"pose {k}": name for k, name in enumerate(options.other_pose_topics, start=2)},
     }
     given = {
@@ -324,17 +321,11 @@ def _problem(
 
 
 def _notes(found: TopicRoles, options: LogOptions, transforms: TransformSource | None) -> tuple[str, ...]:
-    given = {
-        "pose": options.pose_topic,
-        "command": options.command_topic,
-        "wheel": options.wheel_topic,
-        "imu": options.imu_topic,
-    }
     notes = [
         f"{role} topic: {choice.topic.name} ({choice.topic.type.replace('/msg/', '/')})"
         + (f": {choice.why}" if choice.topic.type == TF else "")
         for role, choice in found.named()
-        if choice.topic and not given[role]
+        if choice.topic and not getattr(options, f"{role}_topic")
     ]
     pose = found.pose.topic
     if pose is not None and options.pose_topic is None and looks_like(pose.name, FUSED):

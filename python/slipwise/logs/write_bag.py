@@ -67,7 +67,8 @@ def write_mcap(log: Log, path: Path) -> tuple[LeftOut, ...]:
             last = (stop + shift) / 1e9
             what = f"run {run.name} ends at {last:.10g} s, and stamps in a bag end at {_LATEST} s"
             raise LogError(what, where=str(path), advice="write a table (.csv, .parquet) instead")
-        entries.append((start + shift, RUN_TOPIC, _string(store, run.name)))
+        named = store.serialize_cdr(store.types[RUN_TYPE](data=run.name), RUN_TYPE)
+        entries.append((start + shift, RUN_TOPIC, named))
         entries.extend(_run_entries(run, shift, make))
         end = stop + shift
     entries.sort(key=lambda entry: entry[0])
@@ -180,10 +181,6 @@ def _run_entries(run: Run, shift: int, make: _Messages) -> Iterator[Entry]:
     values = np.column_stack([p.x, p.y, z, quaternions_of(roll, pitch, p.yaw), *variance]).tolist()
     for stamp, frame, row in zip(_stamps(p.t, shift), p.frame.tolist(), values, strict=True):
         yield stamp, POSE_TOPIC, make.pose(stamp, "map" if frame == 0 else f"map_{frame}", row)
-
-
-def _string(store: Typestore, text: str) -> memoryview:
-    return store.serialize_cdr(store.types[RUN_TYPE](data=text), RUN_TYPE)
 
 
 class _Messages:

@@ -69,7 +69,9 @@ class WebPage(Watcher):
         )
         config.timeout_graceful_shutdown = 1
         self._server: Server = Server(config)
-        self._thread = threading.Thread(target=self._serve, name="slipwise-web", daemon=True)
+        self._thread = threading.Thread(
+            target=self._server.run, args=([self._socket],), name="slipwise-web", daemon=True
+        )
         self._thread.start()
         self._wait_for_start()
 
@@ -83,9 +85,6 @@ class WebPage(Watcher):
         self._server.should_exit = True
         self._thread.join(2.0)
         self._socket.close()
-
-    def _serve(self) -> None:
-        self._server.run(sockets=[self._socket])
 
     def _wait_for_start(self) -> None:
         deadline = time.monotonic() + _START

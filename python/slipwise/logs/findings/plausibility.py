@@ -61,13 +61,13 @@ def agreement(windows: MotionWindows) -> Agreement:
         windows=len(w),
         moving=int(moving.sum()),
         turning=float(np.abs(w.rotation).sum()),
-        yaw_inputs=_correlation(w.turn, w.rotation),
+        yaw_inputs=correlation(w.turn, w.rotation),
         yaw_ratio=_ratio(w.turn, w.rotation),
-        yaw_degrees=_correlation(w.turn_degrees, w.rotation),
+        yaw_degrees=correlation(w.turn_degrees, w.rotation),
         yaw_ratio_degrees=_ratio(w.turn_degrees, w.rotation),
-        yaw_v=_correlation(w.turn, w.forward),
-        distance_v=_correlation(w.distance, speed),
-        distance_omega=_correlation(w.distance, np.abs(w.rotation)),
+        yaw_v=correlation(w.turn, w.forward),
+        distance_v=correlation(w.distance, speed),
+        distance_omega=correlation(w.distance, np.abs(w.rotation)),
         distance_ratio=_ratio(w.distance, speed),
         course=_alignment((w.course - heading)[moving]),
         course_degrees=_alignment((w.course - heading_degrees)[moving]),
@@ -217,7 +217,8 @@ def _mirrored(a: Agreement, words: InputWords, *, alone: bool) -> tuple[str, str
     return "poses turn against the inputs", f"{frame}; or {sign}"
 
 
-def _correlation(a: Floats, b: Floats) -> float:
+def correlation(a: Floats, b: Floats) -> float:
+    """Return the correlation of two numbers about 0; 0 where one of them is 0 throughout."""
     scale = float(np.sqrt(np.sum(a * a) * np.sum(b * b)))
     return float(np.sum(a * b)) / scale if scale > 0.0 else 0.0
 

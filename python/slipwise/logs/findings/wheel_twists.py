@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.findings.plausibility import correlation
 from slipwise.logs.log import Bools, Floats
 from slipwise.logs.motion_windows import MotionWindows
 
@@ -116,7 +117,10 @@ class Unrelated(Check):
         moved, driven = w.distance / w.duration, np.hypot(w.forward, w.sideways) / w.duration
         if min(_varied(moved), _varied(driven)) < _VARIED:
             return None
-        turns, speeds = _together(w.turn, w.rotation), _together(moved - moved.mean(), driven - driven.mean())
+        turns, speeds = (
+            correlation(w.turn, w.rotation),
+            correlation(moved - moved.mean(), driven - driven.mean()),
+        )
         if max(turns, speeds) > _UNRELATED:
             return None
         return self.found(
@@ -171,8 +175,3 @@ def _length(angles: Floats) -> float:
 def _varied(values: Floats) -> float:
     mean = float(values.mean())
     return float(values.std()) / mean if mean > 0.0 else 0.0
-
-
-def _together(a: Floats, b: Floats) -> float:
-    size = float(np.sqrt(np.sum(a * a) * np.sum(b * b)))
-    return float(np.sum(a * b)) / size if size > 0.0 else 0.0
