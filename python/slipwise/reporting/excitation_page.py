@@ -14,7 +14,7 @@ from slipwise.excitation import Excitation, Lesson, command_inputs, drawn_robots
 from slipwise.excitation.design import HORIZON
 from slipwise.excitation.moves import command_periods
 from slipwise.excitation.robots import PERIOD
-from slipwise.reporting.figure import LEGEND_ON_TOP, Figure, axis, map_axes, numbers, step_lines
+from slipwise.reporting.figure import LEGEND_ON_TOP, Figure, axis, curve, map_axes, numbers, step_lines
 from slipwise.reporting.markup import bullets, legend, number, table
 from slipwise.reporting.page import Part, page_of
 
@@ -115,14 +115,13 @@ def _map(drive: Excitation) -> Figure:
         corners = np.array([(0.0, 0.0), (width, 0.0), (width, depth), (0.0, depth), (0.0, 0.0)])
         lines.insert(0, _line(corners[:, 0], corners[:, 1], AREA, 2.0))
         left, right, bottom, top = -0.05 * width, 1.05 * width, -0.05 * depth, 1.05 * depth
-    start = {
-        "type": "scatter",
-        "x": [x],
-        "y": [y],
-        "mode": "markers",
-        "marker": {"symbol": "triangle-right", "size": 12, "color": START},
-        "name": "start",
-    }
+    start = curve(
+        [x],
+        [y],
+        mode="markers",
+        marker={"symbol": "triangle-right", "size": 12, "color": START},
+        name="start",
+    )
     return Figure(
         key="area",
         label="the area with the paths of drawn robots",
@@ -134,14 +133,7 @@ def _map(drive: Excitation) -> Figure:
 
 
 def _line(x: NDArray[np.float64], y: NDArray[np.float64], colour: str, width: float) -> dict[str, Any]:
-    return {
-        "type": "scatter",
-        "x": numbers(x),
-        "y": numbers(y),
-        "mode": "lines",
-        "line": {"color": colour, "width": width},
-        "hoverinfo": "skip",
-    }
+    return curve(x, y, line={"color": colour, "width": width}, hoverinfo="skip")
 
 
 def _commands(drive: Excitation) -> Figure:

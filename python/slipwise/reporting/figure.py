@@ -81,14 +81,18 @@ def axis(title: str, *, small: bool = False, **options: object) -> dict[str, Any
     return {**_AXIS, "title": {"text": title, "font": size, "standoff": 3 if small else 6}, **options}
 
 
+def curve(x: ArrayLike, y: ArrayLike, *, mode: str = "lines", **options: object) -> dict[str, Any]:
+    """Return a trace of points, joined by lines unless its mode says otherwise."""
+    return {"type": "scatter", "mode": mode, "x": numbers(x), "y": numbers(y), **options}
+
+
 def step_lines(t: ArrayLike, curves: Mapping[str, tuple[ArrayLike, str]]) -> Figure:
     """Return commands over time, each held until the next: curves by their name with unit, and colours."""
-    steps = {"type": "scatter", "mode": "lines", "x": numbers(t)}
     return Figure(
         key="commands",
         label="commanded speed and yaw rate over time",
         traces=[
-            steps | {"y": numbers(values), "name": name, "line": {"shape": "hv", "color": colour}}
+            curve(t, values, name=name, line={"shape": "hv", "color": colour})
             for name, (values, colour) in curves.items()
         ],
         layout={"xaxis": axis("time [s]"), "yaxis": axis(", ".join(curves)), **LEGEND_ON_TOP},

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.reporting.figure import Figure, axis, baseline_label, numbers, vertical_lines
+from slipwise.reporting.figure import Figure, axis, baseline_label, curve, vertical_lines
 from slipwise.reporting.markup import legend
 from slipwise.reporting.palette import ALARM_COLOUR, BAND, MEASURED, surface_colour, transparent
 from slipwise.reporting.thinning import SMALL_POINTS, thinned, thinning_note
@@ -77,28 +77,25 @@ def _colour(name: str, names: Sequence[str]) -> str:
 def _areas(strip: GroundStrip) -> list[dict[str, Any]]:
     keep = thinned(len(strip.x), SMALL_POINTS)
     return [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "name": baseline_label(name),
-            "x": numbers(strip.x[keep]),
-            "y": numbers(strip.probability[keep, place].round(4)),
-            "stackgroup": "surfaces",
-            "line": {"color": _colour(name, strip.names), "width": 0, "shape": "vh"},
-            "fillcolor": transparent(_colour(name, strip.names), 0.8),
-            "hovertemplate": "%{fullData.name}: %{y:.2f}<br>%{x:.1f} s<extra></extra>",
-        }
+        curve(
+            strip.x[keep],
+            strip.probability[keep, place].round(4),
+            name=baseline_label(name),
+            stackgroup="surfaces",
+            line={"color": _colour(name, strip.names), "width": 0, "shape": "vh"},
+            fillcolor=transparent(_colour(name, strip.names), 0.8),
+            hovertemplate="%{fullData.name}: %{y:.2f}<br>%{x:.1f} s<extra></extra>",
+        )
         for place, name in enumerate(strip.names)
     ]
 
 
 def _marks(strip: GroundStrip) -> dict[str, Any]:
-    return {
-        "type": "scatter",
-        "mode": "markers",
-        "x": numbers([mark.x for mark in strip.marks]),
-        "y": numbers(np.full(len(strip.marks), _MARK_HEIGHT)),
-        "text": [baseline_label(mark.text) for mark in strip.marks],
-        "marker": {"symbol": "triangle-down", "size": 9, "color": MEASURED},
-        "hovertemplate": "%{text}<br>%{x:.1f} s<extra></extra>",
-    }
+    return curve(
+        [mark.x for mark in strip.marks],
+        np.full(len(strip.marks), _MARK_HEIGHT),
+        mode="markers",
+        text=[baseline_label(mark.text) for mark in strip.marks],
+        marker={"symbol": "triangle-down", "size": 9, "color": MEASURED},
+        hovertemplate="%{text}<br>%{x:.1f} s<extra></extra>",
+    )

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from slipwise.models.parameter_table import physical_name, physical_parameters
 from slipwise.models.schema import Parameter
 from slipwise.reporting.contents import Contents
-from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
+from slipwise.reporting.figure import Figure, axis, baseline_label, curve
 from slipwise.reporting.markup import details, grid, legend, number, paragraph
 from slipwise.reporting.palette import LEARNED_STROKE, transparent
 from slipwise.reporting.thinning import SMALL_POINTS, thinned, thinning_note
@@ -118,14 +118,13 @@ def _figure(
     x = timeline.at(run, course.t[keep])
     shown = _Shown.of(parameter)
     mean, std = course.mean[keep, column], course.std[keep, column]
-    value = {
-        "type": "scatter",
-        "mode": "lines" if len(keep) > 1 else "markers",
-        "x": numbers(with_breaks(run, x)),
-        "y": numbers(with_breaks(run, shown.values(mean))),
-        "line": {"color": LEARNED_STROKE.colour, "width": 2},
-        "hovertemplate": "%{y:.4g}<br>%{x:.1f} s<extra></extra>",
-    }
+    value = curve(
+        with_breaks(run, x),
+        with_breaks(run, shown.values(mean)),
+        mode="lines" if len(keep) > 1 else "markers",
+        line={"color": LEARNED_STROKE.colour, "width": 2},
+        hovertemplate="%{y:.4g}<br>%{x:.1f} s<extra></extra>",
+    )
     return Figure(
         key=key,
         label=f"Parameter {shown.name} over time",
@@ -168,13 +167,11 @@ class _Shown:
 
 
 def _band(x: Floats, low: Floats, high: Floats) -> dict[str, Any]:
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": numbers(np.concatenate((x, x[::-1]))),
-        "y": numbers(np.concatenate((high, low[::-1]))),
-        "fill": "toself",
-        "fillcolor": transparent(LEARNED_STROKE.colour, 0.2),
-        "line": {"width": 0},
-        "hoverinfo": "skip",
-    }
+    return curve(
+        np.concatenate((x, x[::-1])),
+        np.concatenate((high, low[::-1])),
+        fill="toself",
+        fillcolor=transparent(LEARNED_STROKE.colour, 0.2),
+        line={"width": 0},
+        hoverinfo="skip",
+    )

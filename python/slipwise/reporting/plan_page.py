@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from slipwise.planning.trajectory import pose_text
-from slipwise.reporting.figure import Figure, map_axes, numbers, step_lines
+from slipwise.reporting.figure import Figure, curve, map_axes, step_lines
 from slipwise.reporting.markup import bullets, legend, number
 from slipwise.reporting.page import Part, page_of
 from slipwise.reporting.plan_drawing import (
@@ -93,17 +93,16 @@ def _map(plan: Plan) -> Figure:
         "showscale": False,
         "hoverinfo": "skip",
     }
-    swept = [_line(curve, SWEPT, fill=True) for curve in outline(plan)]
-    spread = [_line(curve, SPREAD) for curve in ellipses(plan)]
+    swept = [_line(disc, SWEPT, fill=True) for disc in outline(plan)]
+    spread = [_line(ring, SPREAD) for ring in ellipses(plan)]
     path = _line(plan.route.predicted[:, :2], PATH, width=2.5)
-    goal = {
-        "type": "scatter",
-        "x": [plan.goal[0]],
-        "y": [plan.goal[1]],
-        "mode": "markers",
-        "marker": {"symbol": "x", "size": 10, "color": GOAL},
-        "name": "goal",
-    }
+    goal = curve(
+        [plan.goal[0]],
+        [plan.goal[1]],
+        mode="markers",
+        marker={"symbol": "x", "size": 10, "color": GOAL},
+        name="goal",
+    )
     return Figure(
         key="plan",
         label="map with the swept path and its uncertainty",
@@ -114,15 +113,13 @@ def _map(plan: Plan) -> Figure:
     )
 
 
-def _line(curve: Any, colour: str, *, fill: bool = False, width: float = 1.5) -> dict[str, Any]:
-    line = {
-        "type": "scatter",
-        "x": numbers(curve[:, 0]),
-        "y": numbers(curve[:, 1]),
-        "mode": "lines",
-        "line": {"color": colour, "width": 0.0 if fill else width},
-        "hoverinfo": "skip" if fill else "x+y",
-    }
+def _line(points: Any, colour: str, *, fill: bool = False, width: float = 1.5) -> dict[str, Any]:
+    line = curve(
+        points[:, 0],
+        points[:, 1],
+        line={"color": colour, "width": 0.0 if fill else width},
+        hoverinfo="skip" if fill else "x+y",
+    )
     return line | ({"fill": "toself", "fillcolor": colour, "opacity": 0.35} if fill else {})
 
 

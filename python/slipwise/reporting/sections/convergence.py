@@ -12,7 +12,7 @@ from slipwise.calibration.result import History
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, physical_parameters
 from slipwise.number_text import count_text, estimate_text
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.figure import Figure, axis, baseline_label, numbers, vertical_lines
+from slipwise.reporting.figure import Figure, axis, baseline_label, curve, vertical_lines
 from slipwise.reporting.markup import MINUS, details, grid, legend, missing, paragraph, table
 from slipwise.reporting.palette import ALARM_COLOUR, Stroke, stroke_of, transparent
 from slipwise.reporting.parameter_figures import parameter_figures
@@ -150,17 +150,15 @@ def _weights_figure(
     strokes, weights = shown
     timeline, keep = Timeline.of(contents.log), thinned(len(history.t), SMALL_POINTS)
     traces = [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "name": baseline_label(_NO_SLIP if name == PLAIN else name),
-            "x": numbers(timeline.at(history.run[keep], history.t[keep])),
-            "y": numbers(weights[keep, place].round(4)),
-            "stackgroup": "weights",
-            "line": {"color": stroke.colour, "width": 0.5},
-            "fillcolor": transparent(stroke.colour, 0.75),
-            "hovertemplate": "%{fullData.name}: %{y:.2f}<br>%{x:.1f} s<extra></extra>",
-        }
+        curve(
+            timeline.at(history.run[keep], history.t[keep]),
+            weights[keep, place].round(4),
+            name=baseline_label(_NO_SLIP if name == PLAIN else name),
+            stackgroup="weights",
+            line={"color": stroke.colour, "width": 0.5},
+            fillcolor=transparent(stroke.colour, 0.75),
+            hovertemplate="%{fullData.name}: %{y:.2f}<br>%{x:.1f} s<extra></extra>",
+        )
         for place, (name, stroke) in enumerate(strokes.items())
     ]
     figure = Figure(

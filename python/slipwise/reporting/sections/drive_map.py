@@ -11,7 +11,7 @@ import numpy as np
 from slipwise.logs.log import Floats, Run
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
 from slipwise.reporting.contents import Contents
-from slipwise.reporting.figure import TOP_BAR_MARGIN, Figure, axis, numbers, top_colour_bar
+from slipwise.reporting.figure import TOP_BAR_MARGIN, Figure, axis, curve, numbers, top_colour_bar
 from slipwise.reporting.palette import MEASURED, SEQUENTIAL
 from slipwise.reporting.thinning import thinned, thinning_note
 from slipwise.reporting.timeline import Timeline
@@ -75,16 +75,15 @@ def _figure(place: int, drive: _Drive, starts: list[ChosenWindow], timeline: Tim
         "colorscale": SEQUENTIAL,
         "colorbar": top_colour_bar(),
     }
-    path = {
-        "type": "scatter",
-        "mode": "lines+markers",
-        "x": numbers(x),
-        "y": numbers(y),
-        "line": {"color": "#c3cad3", "width": 1},
-        "marker": marker,
-        "customdata": numbers(t),
-        "hovertemplate": "x %{x:.2f} m, y %{y:.2f} m<br>%{customdata:.1f} s<extra></extra>",
-    }
+    path = curve(
+        x,
+        y,
+        mode="lines+markers",
+        line={"color": "#c3cad3", "width": 1},
+        marker=marker,
+        customdata=numbers(t),
+        hovertemplate="x %{x:.2f} m, y %{y:.2f} m<br>%{customdata:.1f} s<extra></extra>",
+    )
     return Figure(
         key=f"map-{place}",
         label=f"Map of the drive {drive.name}",
@@ -113,15 +112,14 @@ def _places(drive: _Drive, starts: list[ChosenWindow]) -> Floats:
 
 def _marks(drive: _Drive, starts: list[ChosenWindow]) -> dict[str, object]:
     places = _places(drive, starts)
-    return {
-        "type": "scatter",
-        "mode": "markers",
-        "x": numbers(places[:, 0]),
-        "y": numbers(places[:, 1]),
-        "text": [str(start.number) for start in starts],
-        "marker": {"size": 8, "color": "#ffffff", "line": {"color": MEASURED, "width": 2}},
-        "hovertemplate": "start of path %{text}<extra></extra>",
-    }
+    return curve(
+        places[:, 0],
+        places[:, 1],
+        mode="markers",
+        text=[str(start.number) for start in starts],
+        marker={"size": 8, "color": "#ffffff", "line": {"color": MEASURED, "width": 2}},
+        hovertemplate="start of path %{text}<extra></extra>",
+    )
 
 
 def _numbers(drive: _Drive, starts: list[ChosenWindow]) -> list[dict[str, object]]:

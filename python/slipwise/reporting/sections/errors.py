@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import PLAIN, SIMPLE, Contents
-from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
+from slipwise.reporting.figure import Figure, axis, baseline_label, curve
 from slipwise.reporting.markup import grid, legend, missing
 from slipwise.reporting.method_names import label
 from slipwise.reporting.palette import stroke_of
@@ -75,13 +75,12 @@ def _trace(contents: Contents, part: Predictions, what: str, timeline: Timeline)
     run, t = part.run[keep], part.t_start[keep]
     stroke = stroke_of(part.method, contents.evaluation.methods)
     unit = "m" if what == "position" else "°"
-    return {
-        "type": "scatter",
-        "mode": "lines+markers",
-        "name": baseline_label(label(part.method, contents)),
-        "x": numbers(with_breaks(run, timeline.at(run, t))),
-        "y": numbers(with_breaks(run, np.asarray(errors[keep]))),
-        "line": {"color": stroke.colour, "dash": stroke.dash, "width": 1.5},
-        "marker": {"color": stroke.colour, "symbol": stroke.symbol, "size": 5},
-        "hovertemplate": f"%{{fullData.name}}: %{{y:.3g}} {unit}<br>%{{x:.1f}} s<extra></extra>",
-    }
+    return curve(
+        with_breaks(run, timeline.at(run, t)),
+        with_breaks(run, np.asarray(errors[keep])),
+        mode="lines+markers",
+        name=baseline_label(label(part.method, contents)),
+        line={"color": stroke.colour, "dash": stroke.dash, "width": 1.5},
+        marker={"color": stroke.colour, "symbol": stroke.symbol, "size": 5},
+        hovertemplate=f"%{{fullData.name}}: %{{y:.3g}} {unit}<br>%{{x:.1f}} s<extra></extra>",
+    )

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from slipwise.calibration.statistics import nis_band
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import Contents
-from slipwise.reporting.figure import Figure, axis, numbers
+from slipwise.reporting.figure import Figure, axis, curve, numbers
 from slipwise.reporting.markup import grid, legend, missing, paragraph
 from slipwise.reporting.method_names import label
 from slipwise.reporting.palette import LEARNED_STROKE, MEASURED, transparent
@@ -140,14 +140,13 @@ def _figure(timeline: Timeline, series: _Series) -> Figure | None:
 
 
 def _dots(x: Floats, y: Floats) -> dict[str, Any]:
-    return {
-        "type": "scatter",
-        "mode": "markers",
-        "x": numbers(x),
-        "y": numbers(y),
-        "marker": {"color": LEARNED_STROKE.colour, "size": 5, "opacity": 0.7},
-        "hovertemplate": "NIS %{y:.2f}<br>%{x:.1f} s<extra></extra>",
-    }
+    return curve(
+        x,
+        y,
+        mode="markers",
+        marker={"color": LEARNED_STROKE.colour, "size": 5, "opacity": 0.7},
+        hovertemplate="NIS %{y:.2f}<br>%{x:.1f} s<extra></extra>",
+    )
 
 
 def _mean_line(x: Floats, y: Floats) -> list[dict[str, Any]]:
@@ -157,14 +156,12 @@ def _mean_line(x: Floats, y: Floats) -> list[dict[str, Any]]:
     mean = np.convolve(y, np.full(_MEAN_OVER, 1.0 / _MEAN_OVER), mode="valid")
     keep = thinned(len(mean))
     return [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "x": numbers(x[_MEAN_OVER - 1 :][keep]),
-            "y": numbers(mean[keep]),
-            "line": {"color": MEASURED, "width": 2},
-            "hovertemplate": f"mean of {_MEAN_OVER}: %{{y:.2f}}<br>%{{x:.1f}} s<extra></extra>",
-        }
+        curve(
+            x[_MEAN_OVER - 1 :][keep],
+            mean[keep],
+            line={"color": MEASURED, "width": 2},
+            hovertemplate=f"mean of {_MEAN_OVER}: %{{y:.2f}}<br>%{{x:.1f}} s<extra></extra>",
+        )
     ]
 
 

@@ -16,7 +16,7 @@ from slipwise.ellipse import ellipse
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
+from slipwise.reporting.figure import Figure, axis, baseline_label, curve
 from slipwise.reporting.markup import details, grid, legend, missing, number, paragraph
 from slipwise.reporting.method_names import BASELINE, label
 from slipwise.reporting.palette import MEASURED, stroke_of, transparent
@@ -168,34 +168,31 @@ def _figure(
 
 def _line(path: NDArray[np.float64], name: str, colour: str, dash: str, width: float) -> dict[str, Any]:
     points = path[thinned(len(path), _POINTS)]
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": name,
-        "x": numbers(points[:, 0]),
-        "y": numbers(points[:, 1]),
-        "line": {"color": colour, "dash": dash, "width": width},
-        "hovertemplate": f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<extra></extra>",
-    }
+    return curve(
+        points[:, 0],
+        points[:, 1],
+        name=name,
+        line={"color": colour, "dash": dash, "width": width},
+        hovertemplate=f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<extra></extra>",
+    )
 
 
 def _arrow(pose: NDArray[np.float64], name: str, colour: str) -> dict[str, Any]:
     """An arrow head at a pose, pointing where the robot does; Plotly's angles go clockwise from up."""
     angle = 90.0 - math.degrees(float(pose[2])) if np.isfinite(pose[2]) else 0.0
-    return {
-        "type": "scatter",
-        "mode": "markers",
-        "x": numbers(pose[:1]),
-        "y": numbers(pose[1:2]),
-        "marker": {
+    return curve(
+        pose[:1],
+        pose[1:2],
+        mode="markers",
+        marker={
             "color": colour,
             "size": 13,
             "symbol": "arrow",
             "angle": round(angle % 360.0, 1),
             "opacity": 0.9,
         },
-        "hovertemplate": f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<extra></extra>",
-    }
+        hovertemplate=f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<extra></extra>",
+    )
 
 
 def _off(pose: NDArray[np.float64], measured: NDArray[np.float64]) -> str:
@@ -211,14 +208,12 @@ def _ellipse(predictions: Predictions, row: int, colour: str) -> list[dict[str, 
     if outline is None:
         return []
     return [
-        {
-            "type": "scatter",
-            "mode": "lines",
-            "x": numbers(outline[:, 0]),
-            "y": numbers(outline[:, 1]),
-            "fill": "toself",
-            "fillcolor": transparent(colour, 0.18),
-            "line": {"color": colour, "width": 1},
-            "hoverinfo": "skip",
-        }
+        curve(
+            outline[:, 0],
+            outline[:, 1],
+            fill="toself",
+            fillcolor=transparent(colour, 0.18),
+            line={"color": colour, "width": 1},
+            hoverinfo="skip",
+        )
     ]

@@ -11,7 +11,7 @@ from slipwise.logs.log import has_course
 from slipwise.logs.motion_windows import evidence_of
 from slipwise.models.share_words import AXES, SHARE_HEAD, axis_shares, share_rows, share_sentences
 from slipwise.reporting.contents import Contents
-from slipwise.reporting.figure import LEGEND_ON_TOP, Figure, axis, numbers
+from slipwise.reporting.figure import LEGEND_ON_TOP, Figure, axis, curve
 from slipwise.reporting.markup import bullets, grid, missing, table
 from slipwise.reporting.palette import LEARNED_STROKE, MEASURED
 
@@ -55,24 +55,16 @@ def _figure(name: str, points: tuple[Floats, Floats], share: float) -> Figure:
         label=f"{what} of the body over the commanded {what}",
         heading=f"{what[0].upper()}{what[1:]}",
         traces=[
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "name": "windows",
-                "showlegend": False,
-                "x": numbers(commanded),
-                "y": numbers(body),
-                "marker": {"size": 4, "color": LEARNED_STROKE.colour, "opacity": 0.5},
-            },
+            curve(
+                commanded,
+                body,
+                mode="markers",
+                name="windows",
+                showlegend=False,
+                marker={"size": 4, "color": LEARNED_STROKE.colour, "opacity": 0.5},
+            ),
             *(
-                {
-                    "type": "scatter",
-                    "mode": "lines",
-                    "name": label,
-                    "x": numbers(ends),
-                    "y": numbers(values),
-                    "line": {"color": colour, "dash": dash, "width": 1.5},
-                }
+                curve(ends, values, name=label, line={"color": colour, "dash": dash, "width": 1.5})
                 for label, values, colour, dash in lines
             ),
         ],
