@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from slipwise import _core
 from slipwise.models.schema import NotNegative, Parameter, Positive, Section
@@ -54,14 +54,21 @@ def limits_section(search: _core.LimitSearch) -> LimitsSection:
         limit = found.get((_CORE_AXES[axis], kind))
         return None if limit is None else LearnedLimit(value=limit.value, std=limit.std)
 
-    axes = {axis: AxisLimitsSection(**{kind: learned(axis, kind) for kind in KINDS}) for axis in AXES}
     limits = search.limits
+    apart = LearnedLimit(value=limits.wheel_separation, std=search.wheel_separation_std)
+    return _section(learned, apart, (limits.gain_v, limits.gain_omega))
+
+
+def _section(
+    learned: Callable[[str, str], LearnedLimit | None], apart: LearnedLimit, gains: Sequence[float]
+) -> LimitsSection:
+    """Return what was learned of each axis and kind, between wheels that are so far `apart`."""
     return LimitsSection(
-        **axes,
-        wheel_separation=limits.wheel_separation,
-        wheel_separation_std=search.wheel_separation_std,
-        gain_v=limits.gain_v,
-        gain_omega=limits.gain_omega,
+        **{axis: AxisLimitsSection(**{kind: learned(axis, kind) for kind in KINDS}) for axis in AXES},
+        wheel_separation=apart.value,
+        wheel_separation_std=apart.std,
+        gain_v=gains[0],
+        gain_omega=gains[1],
     )
 
 
@@ -106,19 +113,11 @@ def limits_of(rows: Iterable[Parameter], gains: Sequence[float] | None) -> Limit
         row = found.pop(name, None)
         return None if row is None else LearnedLimit(value=row.value, std=row.std)
 
-    axes = {
-        axis: AxisLimitsSection(**{kind: learned(f"limits.{axis}.{kind}") for kind in KINDS}) for axis in AXES
-    }
     apart = learned(SEPARATION) or LearnedLimit(value=1.0, std=0.0)
+    section = _section(lambda axis, kind: learned(f"limits.{axis}.{kind}"), apart, gains)
     if found:
         raise ValueError(f"no drive has a limit {', '.join(found)}")
-    return LimitsSection(
-        **axes,
-        wheel_separation=apart.value,
-        wheel_separation_std=apart.std,
-        gain_v=gains[0],
-        gain_omega=gains[1],
-    )
+    return section
 
 
 def core_limits(section: LimitsSection) -> _core.CommandLimits:
