@@ -18,7 +18,7 @@ from slipwise.logs.kinematics import twist_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
 from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples, select
-from slipwise.logs.navsat import course_of_path, east_north_up, heading_from_imu, tilt_from_imu
+from slipwise.logs.navsat import angles_at, course_of_path, east_north_up, tilt_from_imu
 from slipwise.logs.odometry_twist import always_zero, poses_move, twists_between
 from slipwise.logs.options import LogOptions
 from slipwise.logs.rotation import angles_of, unit_quaternions
@@ -251,7 +251,7 @@ def fix_stream(
     if imu is not None and len(imu.values):
         orientation = _orientation(context, imu)
         if orientation is not None:
-            yaw, known = heading_from_imu(t, orientation.t, orientation.yaw)
+            yaw, known = angles_at(t, orientation.t, orientation.yaw)
             tilts = orientation.tilts_at(t)
     course = not known.any()
     if course:

@@ -10,10 +10,9 @@ import numpy as np
 
 from slipwise.logs.kinematics import twist_from_wheels
 from slipwise.logs.log import Floats
+from slipwise.logs.navsat import angles_at
 
 Columns = Mapping[str, Floats]
-
-_NEAR = 0.5  # s from an angle, within which another time has one
 
 
 @dataclass(frozen=True)
@@ -53,16 +52,10 @@ def held(t: Floats, other_t: Floats, values: Floats) -> Floats:
 
 
 def between(t: Floats, other_t: Floats, angles: Floats) -> Floats:
-    """Return angles [M] in rad at times [N], interpolated; NaN where none is within half a second."""
+    """Return angles [M] in rad at times [N], interpolated; NaN where none is near enough."""
     finite = np.isfinite(angles) & np.isfinite(other_t)
-    other_t, angles = other_t[finite], angles[finite]
-    if len(other_t) == 0:
-        return np.full(len(t), np.nan)
-    after = np.clip(np.searchsorted(other_t, t), 0, len(other_t) - 1)
-    before = np.maximum(after - 1, 0)
-    near = np.minimum(np.abs(other_t[after] - t), np.abs(other_t[before] - t)) <= _NEAR
-    found = np.interp(t, other_t, np.unwrap(angles))
-    return np.where(near, np.arctan2(np.sin(found), np.cos(found)), np.nan)
+    found, near = angles_at(t, other_t[finite], angles[finite])
+    return np.where(near, found, np.nan)
 
 
 def yaw_from_heading(heading: Floats) -> Floats:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 from slipwise.logs.log import LeftOut
 
 
@@ -18,6 +20,11 @@ class Tally:
             return
         before, first = self._entries.get((kind, reason), (0, where))
         self._entries[kind, reason] = (before + count, first)
+
+    def add_lines(self, kind: str, reason: str, numbers: Sequence[int], place: Callable[[int], str]) -> None:
+        """Count numbered lines, or whatever a file consists of; `place` says where one with a number is."""
+        if numbers:
+            self.add(kind, reason, count=len(numbers), where=place(numbers[0]))
 
     def result(self) -> tuple[LeftOut, ...]:
         """Return the entries in the order in which they were met."""

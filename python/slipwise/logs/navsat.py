@@ -45,16 +45,16 @@ def in_tangent_plane(points: Floats, latitude: Floats, longitude: Floats, altitu
     return np.asarray((points - origin) @ np.stack([east, north, up], axis=1))
 
 
-def heading_from_imu(t: Floats, imu_t: Floats, imu_yaw: Floats) -> tuple[Floats, Bools]:
-    """Interpolate the IMU's yaw [M] at the fixes.
+def angles_at(t: Floats, imu_t: Floats, angles: Floats) -> tuple[Floats, Bools]:
+    """Interpolate an IMU's angles [M], such as its yaw, at the fixes.
 
     Returns:
-        yaw [N] in rad, and whether there was an IMU sample near enough [N].
+        the angles [N] in rad, and whether there was an IMU sample near enough [N].
     """
     if len(imu_t) == 0:
         return np.full(len(t), np.nan), np.zeros(len(t), bool)
-    yaw = np.interp(t, imu_t, np.unwrap(imu_yaw))
-    return np.arctan2(np.sin(yaw), np.cos(yaw)), _near(t, imu_t)
+    found = np.interp(t, imu_t, np.unwrap(angles))
+    return np.arctan2(np.sin(found), np.cos(found)), _near(t, imu_t)
 
 
 def tilt_from_imu(t: Floats, imu_t: Floats, angle: Floats) -> Floats:

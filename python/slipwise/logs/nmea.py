@@ -89,8 +89,7 @@ def _sentences(path: Path, text: str, tally: Tally) -> list[tuple[int, list[str]
         else:
             sentences.append((number, match["body"].split(",")))
     for lines, what in ((cut, "sentences that are cut off"), (wrong, "sentences with a wrong checksum")):
-        if lines:
-            tally.add("broken-row", what, count=len(lines), where=f"{path.name}, line {lines[0]}")
+        tally.add_lines("broken-row", what, lines, lambda line: f"{path.name}, line {line}")
     return sentences
 
 

@@ -174,6 +174,10 @@ def _numbers_in(line: str) -> int:
 
 def _tum_poses(path: Path, text: str, tally: Tally) -> RawStream:
     rows, numbers, broken = [], [], []
+
+    def place(line: int) -> str:
+        return f"{path.name}, line {line}"
+
     for number, line in enumerate(text.splitlines(), start=1):
         parts = line.replace(",", " ").split()
         if not parts or parts[0].startswith("#"):
@@ -187,19 +191,11 @@ def _tum_poses(path: Path, text: str, tally: Tally) -> RawStream:
             numbers.append(number)
         else:
             broken.append(number)
-    if broken:
-        where = f"{path.name}, line {broken[0]}"
-        tally.add("broken-row", "lines of poses that are not 8 numbers", count=len(broken), where=where)
+    tally.add_lines("broken-row", "lines of poses that are not 8 numbers", broken, place)
     values = np.array(rows, dtype=np.float64).reshape(-1, _TUM)
     columns = dict(zip(("x", "y", "z"), values[:, 1:4].T, strict=True))
-    stream = RawStream(
-        "poses",
-        values[:, 0],
-        columns,
-        np.array(numbers, dtype=np.int64),
-        lambda line: f"{path.name}, line {line}",
-        frozenset(OPTIONAL_POSE_COLUMNS),
-    )
+    found, optional = np.array(numbers, dtype=np.int64), frozenset(OPTIONAL_POSE_COLUMNS)
+    stream = RawStream("poses", values[:, 0], columns, found, place, optional)
     return _turned(stream, values[:, 4:], tally)
 
 

@@ -37,6 +37,10 @@ def read_ppk(path: Path, text: str, tally: Tally) -> tuple[RawStream, tuple[str,
     if "latitude(deg)" not in header or "JST" in header:
         raise LogError("not solutions in degrees", where=str(path), advice=_SETTINGS)
     rows, numbers, broken, poor = [], [], [], []
+
+    def place(line: int) -> str:
+        return f"{path.name}, line {line}"
+
     for number, line in enumerate(lines, start=1):
         fields = line.replace(",", " ").split()
         if not fields or line.startswith("%"):
@@ -49,24 +53,22 @@ def read_ppk(path: Path, text: str, tally: Tally) -> tuple[RawStream, tuple[str,
         else:
             rows.append(row)
             numbers.append(number)
-    _count(tally, path, broken, "broken-row", "lines that are no solution")
-    _count(
-        tally, path, poor, "poor-fix", "solutions without fixed or float ambiguities (Q other than 1 and 2)"
-    )
+    for lost, kind, reason in (
+        (broken, "broken-row", "lines that are no solution"),
+        (poor, "poor-fix", "solutions without fixed or float ambiguities (Q other than 1 and 2)"),
+    ):
+        tally.add_lines(kind, f"{path.name}: {reason}", lost, place)
     values = np.array(rows, dtype=np.float64).reshape(-1, 6)
     leap = 0 if "UTC" in header else LEAP_SECONDS
     notes = (f"{path.name}: GPS time, {leap} s ahead of UTC, was turned into UTC",) if leap else ()
-    stream = _stream(path, values, values[:, 0] - leap, np.array(numbers, dtype=np.int64))
-    return stream, notes
-
-
-def _stream(
-    path: Path, values: Floats, t: Floats, numbers: np.ndarray[tuple[int], np.dtype[np.int64]]
-) -> RawStream:
-    places = east_north_up(*values[:, 1:4].T) if len(values) else np.empty((0, 3))
-    columns = {"x": places[:, 0], "y": places[:, 1], "z": places[:, 2], "std_xy": values[:, 5]}
+    found = np.array(numbers, dtype=np.int64)
     optional = frozenset(("z", "std_xy"))
-    return RawStream("poses", t, columns, numbers, lambda line: f"{path.name}, line {line}", optional)
+    return RawStream("poses", values[:, 0] - leap, _columns(values), found, place, optional), notes
+
+
+def _columns(values: Floats) -> dict[str, Floats]:
+    places = east_north_up(*values[:, 1:4].T) if len(values) else np.empty((0, 3))
+    return {"x": places[:, 0], "y": places[:, 1], "z": places[:, 2], "std_xy": values[:, 5]}
 
 
 def _solution(fields: list[str]) -> tuple[float, ...] | None:
@@ -87,8 +89,3 @@ def _solution(fields: list[str]) -> tuple[float, ...] | None:
     if not (abs(latitude) <= 90.0 and abs(longitude) <= 360.0 and abs(height) < 1e5):
         return None
     return seconds, latitude, longitude, height, quality, float(np.sqrt(0.5 * (north**2 + east**2)))
-
-
-def _count(tally: Tally, path: Path, lines: list[int], kind: str, reason: str) -> None:
-    if lines:
-        tally.add(kind, f"{path.name}: {reason}", count=len(lines), where=f"{path.name}, line {lines[0]}")

@@ -42,10 +42,7 @@ def track_stream(path: Path, unit: str, fixes: Iterable[tuple[int, Fix | None]],
     def place(number: int) -> str:
         return f"{path.name}, {unit} {number}"
 
-    if unusable:
-        tally.add(
-            "poor-fix", "fixes without a time or a place", count=len(unusable), where=place(unusable[0])
-        )
+    tally.add_lines("poor-fix", "fixes without a time or a place", unusable, place)
     t, latitude, longitude, height = values.T
     known = np.nan_to_num(height, nan=float(np.nanmedian(height)) if not np.isnan(height).all() else 0.0)
     points = ecef(latitude, longitude, known)

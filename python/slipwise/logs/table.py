@@ -123,6 +123,25 @@ class Table:
             return np.asarray(names[indices])
 
 
+def is_parquet(path: Path) -> bool:
+    """Say whether a file is Parquet, by its first bytes."""
+    with path.open("rb") as file:
+        return file.read(4) == b"PAR1"
+
+
+def read_table(
+    path: Path, *, numeric: Collection[str], text: Collection[str], columns: Mapping[str, str], tally: Tally
+) -> Table:
+    """Read a table by what its first bytes say: Parquet, or a CSV file as `read_csv` does.
+
+    Raises:
+        LogError: the file is cut off or is not such a table.
+    """
+    if is_parquet(path):
+        return read_parquet(path, columns=columns)
+    return read_csv(path, numeric=numeric, text=text, columns=columns, tally=tally)
+
+
 def read_csv(
     path: Path, *, numeric: Collection[str], text: Collection[str], columns: Mapping[str, str], tally: Tally
 ) -> Table:

@@ -44,7 +44,7 @@ from slipwise.logs.streams import (
     to_poses,
     without_fix,
 )
-from slipwise.logs.table import Columns, Table, read_csv, read_parquet
+from slipwise.logs.table import Columns, Table, is_parquet, read_table
 from slipwise.logs.tidy_columns import (
     FORCE,
     MEASURED_BESIDE,
@@ -101,13 +101,9 @@ def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
     columns = options.columns
     if options.poses is not None:  # names of pose columns are those of the other file
         columns = {tidy: own for tidy, own in columns.items() if tidy not in POSE_COLUMNS}
-    with path.open("rb") as file:
-        parquet = file.read(4) == b"PAR1"
-    if parquet:
-        return read_parquet(path, columns=columns)
-    if not columns:
+    if not columns and not is_parquet(path):
         refuse_poses_alone(path)
-    return read_csv(path, numeric=NUMERIC, text=TEXT, columns=columns, tally=tally)
+    return read_table(path, numeric=NUMERIC, text=TEXT, columns=columns, tally=tally)
 
 
 def _log(table: Table, options: LogOptions, tally: Tally) -> Log:

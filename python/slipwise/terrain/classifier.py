@@ -77,7 +77,7 @@ class TerrainClassifier:
         for kind, pool in self.pools.items():
             if share > 0.0 and pool.rejections:
                 bound = rejection_at(pool.rejections, share).bound
-                named[_equal(answer.kind, kind) & (answer.unknown >= bound)] = UNKNOWN
+                named[(answer.kind == kind) & (answer.unknown >= bound)] = UNKNOWN
         return named
 
 
@@ -96,7 +96,3 @@ class Answer:
         known = np.asarray(np.isfinite(self.probability).all(axis=1))
         best = np.where(known[:, None], self.probability, 0.0).argmax(axis=1)
         return np.where(known, best, len(self.surfaces))
-
-
-def _equal(names: NDArray[np.object_], name: str) -> NDArray[np.bool_]:
-    return np.array([own == name for own in names], dtype=bool)

@@ -14,7 +14,7 @@ from slipwise import _core
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
 from slipwise.logs.open_log import readable
-from slipwise.logs.table import Table, read_csv, read_parquet
+from slipwise.logs.table import Table, read_table
 from slipwise.terrain.classifier import UNKNOWN
 
 Floats = NDArray[np.float64]
@@ -69,12 +69,7 @@ def _table(path: Path) -> Table:
     file, bag = readable(path)
     if bag:
         raise LogError("a bag, not a table of labels", where=str(path), advice=_ADVICE)
-    with file.open("rb") as stream:
-        parquet = stream.read(4) == b"PAR1"
-    if parquet:
-        table = read_parquet(file, columns={})
-    else:
-        table = read_csv(file, numeric=("t_start", "t_end"), text=("run", "label"), columns={}, tally=Tally())
+    table = read_table(file, numeric=("t_start", "t_end"), text=("run", "label"), columns={}, tally=Tally())
     missing = [name for name in _NEEDED if name not in table.names]
     if missing:
         raise LogError(f"no column {missing[0]!r} in a table of labels", where=str(path), advice=_ADVICE)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
 from slipwise.logs.open_log import readable
-from slipwise.logs.table import Table, read_csv, read_parquet
+from slipwise.logs.table import Table, read_table
 
 Floats = NDArray[np.float64]
 
@@ -97,14 +97,8 @@ def _table(path: Path, tally: Tally) -> Table:
     file, bag = readable(path)
     if bag:
         raise LogError("a bag, not a table", where=str(path), advice="write its IMU and currents as CSV")
-    with file.open("rb") as stream:
-        parquet = stream.read(4) == b"PAR1"
-    numeric = ("t", *IMU, *DRIVE)
-    text = ("run", "terrain")
-    if parquet:
-        table = read_parquet(file, columns={})
-    else:
-        table = read_csv(file, numeric=("time", *numeric), text=text, columns={}, tally=tally)
+    numeric, text = ("time", "t", *IMU, *DRIVE), ("run", "terrain")
+    table = read_table(file, numeric=numeric, text=text, columns={}, tally=tally)
     if _time_name(table) not in table.names or not any(_has(table, names) for names in (IMU, DRIVE)):
         raise LogError("neither IMU nor motor currents", where=str(path), advice=_ADVICE)
     return table
@@ -131,8 +125,8 @@ def _streams(table: Table, run: str, rows: NDArray[np.int64], tally: Tally) -> d
     for kind, names in (("imu", IMU), ("drive", DRIVE)):
         if not _has(table, names):
             continue
-        t = _column(table, _time_name(table), rows, tally)
-        values = np.stack([_column(table, name, rows, tally) for name in names], axis=1)
+        t = table.numbers(_time_name(table), tally)[rows]
+        values = np.stack([table.numbers(name, tally)[rows] for name in names], axis=1)
         whole = np.isfinite(t) & np.isfinite(values).all(axis=1)
         t, values = t[whole], values[whole]
         later = np.concatenate([[True], t[1:] > np.maximum.accumulate(t)[:-1]]) if len(t) else whole[:0]
@@ -143,13 +137,9 @@ def _streams(table: Table, run: str, rows: NDArray[np.int64], tally: Tally) -> d
     return found
 
 
-def _column(table: Table, name: str, rows: NDArray[np.int64], tally: Tally) -> Floats:
-    return table.numbers(name, tally)[rows]
-
-
 def _labels(table: Table, rows: NDArray[np.int64], tally: Tally) -> tuple[Floats, NDArray[np.object_]]:
     codes, names = table.codes("terrain")
-    t = _column(table, _time_name(table), rows, tally)
+    t = table.numbers(_time_name(table), tally)[rows]
     values = np.array(names, dtype=object)[codes[rows]]
     named = np.isfinite(t) & (values != "")
     return t[named], values[named]

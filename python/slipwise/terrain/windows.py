@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,14 +53,7 @@ class Windows:
 
     def only(self, chosen: NDArray[np.bool_]) -> Windows:
         """Return the windows that are chosen, [N]."""
-        return Windows(
-            self.run[chosen],
-            self.start[chosen],
-            self.end[chosen],
-            self.label[chosen],
-            self.vibration[chosen],
-            self.current[chosen],
-        )
+        return Windows(*(getattr(self, column.name)[chosen] for column in fields(self)))
 
 
 def _measured(features: Floats) -> NDArray[np.bool_]:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from slipwise.logs import Inputs
-from slipwise.logs.navsat import east_north_up, ecef, heading_from_imu, heading_from_path, tilt_from_imu
+from slipwise.logs.navsat import angles_at, east_north_up, ecef, heading_from_path, tilt_from_imu
 
 
 def test_earth_centred_positions_on_the_axes() -> None:
@@ -58,7 +58,7 @@ def test_slow_driving_at_a_high_rate_has_a_course() -> None:
 
 def test_imu_headings_are_followed_through_half_a_turn_and_not_made_up_across_a_gap() -> None:
     imu_t, imu_yaw = np.array([0.0, 0.2, 5.0]), np.array([3.1, -3.1, 0.0])
-    yaw, near = heading_from_imu(np.array([0.1, 2.5]), imu_t, imu_yaw)
+    yaw, near = angles_at(np.array([0.1, 2.5]), imu_t, imu_yaw)
     assert near.tolist() == [True, False]
     assert abs(abs(yaw[0]) - np.pi) < 1e-9
 
