@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from contradictory_logs import dead_reckoned
+from contradictory_logs import dead_reckoned, teleported
 
 from slipwise.logs import Inputs, Log, Poses, Run
 from slipwise.logs.findings.diagnose import diagnose_log
@@ -166,13 +166,6 @@ def stopped(run: Run) -> Run:
     p, rng = run.poses, np.random.default_rng(3)
     noise = 0.004 * rng.standard_normal((3, len(p)))
     return replace(run, poses=replace(p, x=noise[0], y=noise[1], yaw=0.3 * noise[2]))
-
-
-def teleporting(p: Poses) -> Poses:
-    """Put every second and third pose somewhere else."""
-    rng = np.random.default_rng(2)
-    away = np.repeat(rng.uniform(-20.0, 20.0, (len(p) // 2 + 1, 2)), 2, axis=0)[: len(p)]
-    return replace(p, x=p.x + away[:, 0], y=p.y + away[:, 1])
 
 
 def off_centre(p: Poses, ahead: float = 1.0, left: float = 0.2) -> Poses:
@@ -347,7 +340,7 @@ FAULTS: dict[str, Fault] = {
     "watchdog": Fault(watchdog, ("command-timeout",), ("commands",)),
     "stopped": Fault(stopped, ("does-not-move",)),
     "frozen localiser": Fault(frozen, ("frozen-poses",)),
-    "teleporting poses": of_poses(teleporting, "unreachable-poses", "implausible", "lost-heading"),
+    "teleporting poses": of_poses(teleported, "unreachable-poses", "implausible", "lost-heading"),
     "no heading": of_poses(lambda p: replace(p, yaw=0.0 * p.yaw), "constant-heading", "lost-heading"),
     "course for a heading": Fault(by_course, ("course-heading",), unseen=FORWARD),
     "sensor 1 m ahead": of_poses(off_centre, "sensor-off-centre"),
