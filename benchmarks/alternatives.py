@@ -21,7 +21,7 @@ from slipwise.calibration.prepared_run import prepare_run
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.statistics import held_out_half
 from slipwise.logs import Log, LogOptions, Poses
-from slipwise.logs.time_span import cut_to_span
+from slipwise.logs.open_log import cut_to_span
 
 HERE = Path(__file__).resolve().parent
 sys.path += [str(HERE / "promises"), str(HERE.parent / "python" / "tests")]  # their simulations

@@ -39,8 +39,8 @@ from slipwise.fleet import write_prior
 from slipwise.logs import Log, Poses, Run
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import empty_poses
+from slipwise.logs.open_log import cut_to_span
 from slipwise.logs.pose_clock import find_clock_offset, pose_motion
-from slipwise.logs.time_span import cut_to_span
 from slipwise.segments import recording_of
 
 LATE = (*CONTINUOUS, "warthog_windows/asphalt_8_7_11h30s30")  # poses are 0.05 s to 0.3 s late

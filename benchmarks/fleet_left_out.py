@@ -29,7 +29,7 @@ from slipwise.errors import SlipwiseError
 from slipwise.evaluation import EvaluationOptions
 from slipwise.fleet import write_prior
 from slipwise.logs import Log
-from slipwise.logs.time_span import cut_to_span
+from slipwise.logs.open_log import cut_to_span
 from slipwise.models import Model
 
 HUSKY = {

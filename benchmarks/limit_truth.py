@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python" / "tests")
 from limited_drives import CHANNELS, FREE, SIDES, TRACK, search, true_value
 
 from slipwise import _core
-from slipwise.calibration.limit_words import limits_advice
+from slipwise.calibration.judge import limits_advice
 from slipwise_sim import dull_drive, steps_drive
 
 SECONDS = 120.0

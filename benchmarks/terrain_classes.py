@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 from slipwise.terrain import UNKNOWN, cut_windows, read_recordings
 from slipwise.terrain.classifier import Answer, TerrainClassifier
 from slipwise.terrain.scores import Score, score_of
-from slipwise.terrain.train import OVERLAP, train_windows
-from slipwise.terrain.usable_windows import usable_windows
+from slipwise.terrain.train import OVERLAP, train_windows, usable_windows
 from slipwise.terrain.windows import Cutting, Windows, cutting_of
 
 Floats = NDArray[np.float64]

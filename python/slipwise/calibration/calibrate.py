@@ -34,10 +34,9 @@ from slipwise.calibration.prepared_run import (
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.same_log import learned_before
 from slipwise.calibration.settings import AVERAGE, Settings
-from slipwise.calibration.shortage import shortage_advice, silence
+from slipwise.calibration.shortage import shortage_advice, silence, unused_measurements, unused_wheels
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
-from slipwise.calibration.unused_measurements import unused_measurements, unused_wheels
 from slipwise.calibration.verdict import LogFacts
 from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import LogError, ModelError, SettingsError

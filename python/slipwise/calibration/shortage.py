@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Why a log has too few segments to judge a model by, and what would give more."""
+"""Why a log has too few segments to judge a model by, and what of a log learning does not use."""
 
 from __future__ import annotations
 
 from slipwise.calibration.judgement import FEWEST_WINDOWS
+from slipwise.calibration.learner import BASELINE, DIRECT, JOINT, LIMITS, Posterior
 from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
-from slipwise.calibration.settings import Settings
+from slipwise.calibration.settings import AVERAGE, Settings
+from slipwise.calibration.sloping_ground import has_attitude, has_known_force
 from slipwise.errors import LogError
 from slipwise.logs.findings.command_stops import stops_of
 from slipwise.logs.log import Log
 from slipwise.models.inputs import INPUT_NAMES
+from slipwise.segments import source_names
 
 NEEDED = 2 * FEWEST_WINDOWS  # segments, half of which are held out
 _NAMES = {"command": "commands", "wheel": "wheel speeds"}
@@ -18,6 +21,12 @@ _CURES = {
     "unknown-input": "record the inputs without gaps, or raise unknown_after under [segment]",
     "standing-still": "drive for more of the time",
     "heading-ambiguous": "record poses more often, or turn more slowly",
+}
+_STRUCTURES = {
+    JOINT: "slip with lag and delay",
+    LIMITS: "slip with lag and delay",
+    DIRECT: "slip with a delay",
+    BASELINE: "the kinematic baseline",
 }
 
 
@@ -61,3 +70,52 @@ def _segments(log: Log, input_name: str, length: float, settings: Settings) -> i
         return len(collect_windows(prepare_run(log, input_name), length, settings.rules()))
     except LogError:
         return 0
+
+
+def unused_wheels(log: Log, settings: Settings, kept: Posterior, input_name: str) -> tuple[str, ...]:
+    """Say why a model of commands does not use the wheel speeds of its log; an empty tuple where it does.
+
+    Args:
+        log: what was learned.
+        settings: that it was learned with.
+        kept: what was learned.
+        input_name: "command" or "wheel", what it was learned from.
+    """
+    with_wheels = sum(run.wheels is not None and len(run.wheels) > 1 for run in log.runs)
+    if input_name != "command" or not with_wheels or kept.motion.response:
+        return ()
+    if any(run.commands is not None and run.commands.car is not None for run in log.runs):
+        why = "curves of throttle and steering are learned from poses alone"
+    elif settings.estimator != AVERAGE:
+        why = f"{settings.estimator} learns from commands alone"
+    elif settings.basis != "auto":
+        why = f"only basis auto also learns by way of the wheels, and it is {settings.basis}"
+    elif "cascaded" not in settings.auto.structures:
+        why = "auto.structures leaves cascaded out"
+    else:
+        why = f"{_STRUCTURES[kept.structure]} predicts better"
+        if with_wheels < len(log.runs):
+            why += f", and {with_wheels} of {len(log.runs)} runs have some"
+    return (f"From commands, wheel speeds are not used: {why}.",)
+
+
+def unused_measurements(log: Log, settings: Settings, *, smooth: bool) -> tuple[str, ...]:
+    """Return sentences on what the log has beside what is learned from, and what to do."""
+    said = []
+    names = source_names(log.runs)
+    others = ", ".join(names[1:])
+    if len(names) > 1 and settings.estimator != AVERAGE:
+        said.append(
+            f"{settings.estimator} learns from the poses of {names[0]} alone; those of {others} are not "
+            f"used: estimator = '{AVERAGE}' uses all"
+        )
+    if len(names) > 1 and smooth:
+        said.append(f"smoothed slip is of the poses of {names[0]} alone; those of {others} are not used")
+    if any(run.commands is not None and run.commands.car is not None for run in log.runs):
+        what = "known forces" if has_known_force(log) else "roll and pitch" if has_attitude(log) else ""
+        if what:
+            said.append(
+                f"{what} are not used: a model of throttle and steering has no slip that gravity or a force "
+                "causes; where they matter, calibrate from measured speeds with --input wheel"
+            )
+    return tuple(said)

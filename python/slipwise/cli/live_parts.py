@@ -209,7 +209,7 @@ def watchers_for(show: Show, table: LiveTable) -> list[Watcher]:
     Raises:
         SlipwiseError: an address or a file cannot be used, or a package is missing.
     """
-    from slipwise.live.watch.error_lines import ErrorLines
+    from slipwise.live.watch.terminal import ErrorLines
 
     found: list[Watcher] = []
     headlines = []

@@ -15,9 +15,8 @@ from typing import Any
 from slipwise.errors import SlipwiseError
 from slipwise.live.cdr_reader import reader_of
 from slipwise.live.first_messages import FirstMessages
-from slipwise.live.listeners import Listeners
-from slipwise.live.node_parameters import NodeParameters
 from slipwise.live.outputs import AppliedParameters, Output, Status
+from slipwise.live.parameter_call import NodeParameters
 from slipwise.live.ros_messages import TOPICS, RosMessages, RosTopic
 from slipwise.live.ros_roles import Use, uses_of
 from slipwise.live.ros_samples import (
@@ -47,6 +46,7 @@ BOOL, EMPTY, STRING = "std_msgs/msg/Bool", "std_msgs/msg/Empty", "std_msgs/msg/S
 DIAGNOSTICS_EVERY = 1.0  # s of the wall clock
 
 ToSample = Callable[[Any, float], Any]
+LOOK_EVERY = 0.5  # s between two looks; who comes meanwhile hears nothing until then
 
 
 @dataclass(frozen=True)
@@ -281,3 +281,27 @@ def _from_source(convert: ToPose, source: str) -> ToSample:
 
 def _all_of(converters: list[ToSample]) -> ToSample:
     return lambda message, t: [convert(message, t) for convert in converters]
+
+
+class Listeners:
+    """Remembers for half a second whether a topic has subscribers; for one thread.
+
+    Args:
+        connections: how many subscriptions hear us on a topic.
+        now: the time of a clock that is never set [s].
+    """
+
+    def __init__(
+        self, connections: Callable[[str], int], *, now: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._connections, self._now = connections, now
+        self._looked: dict[str, tuple[float, bool]] = {}
+
+    def on(self, topic: str) -> bool:
+        """Return whether there was a subscriber at the last look."""
+        now = self._now()
+        at, subscribed = self._looked.get(topic, (now - LOOK_EVERY, False))
+        if now >= at + LOOK_EVERY:
+            subscribed = self._connections(topic) > 0
+            self._looked[topic] = (now, subscribed)
+        return subscribed

@@ -4,23 +4,25 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from slipwise.addresses import shown
 from slipwise.argument_types import check_arguments
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.command_timeout import with_ended_commands
 from slipwise.logs.corrections import scaled_inputs, turned_poses
-from slipwise.logs.log import Log
+from slipwise.logs.log import Floats, Inputs, Log, Poses, Run
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
 from slipwise.logs.remote import local_file
 from slipwise.logs.run_name import run_name
-from slipwise.logs.time_span import cut_to_span
 from slipwise.models.axes import sideways_span
 
 _KNOWN = (
@@ -210,3 +212,63 @@ def _labels(logs: list[Log]) -> list[str]:
     stems = [run_name(Path(log.sources[0].path)) if log.sources else "log" for log in logs]
     counted = Counter(stems)
     return [stem if counted[stem] == 1 else f"{number}-{stem}" for number, stem in enumerate(stems, start=1)]
+
+
+def cut_to_span(log: Log, start: float | None, end: float | None) -> Log:
+    """Return what lies between `start` and `end` [s], counted from the first stamp of the log.
+
+    The input that is held at the start stays. Where runs begin their clocks again, each is cut so.
+
+    Raises:
+        LogError: nothing is left.
+    """
+    stamps = [t for run in log.runs for t in _stamps(run) if len(t)]
+    if (start is None and end is None) or not stamps:
+        return log
+    first, last = min(float(t[0]) for t in stamps), max(float(t[-1]) for t in stamps)
+    low, high = first + (start or 0.0), first + (math.inf if end is None else end)
+    runs = tuple(run for run in (_cut_run(run, low, high) for run in log.runs) if len(run.poses))
+    until = "its end" if end is None else f"{end:g} s"
+    span = f"{start or 0.0:g} s to {until}"
+    if not runs:
+        where = log.sources[0].path if log.sources else ""
+        given = " ".join(f"--{n} {v:g}" for n, v in (("start", start), ("end", end)) if v is not None)
+        what = f"the log is {last - first:.0f} s long; {given} leaves no pose"
+        raise LogError(what, where=where, advice="choose times within the log")
+    return replace(log, runs=runs, notes=(*log.notes, f"only {span} of {last - first:.1f} s are used"))
+
+
+def _stamps(run: Run) -> tuple[Floats, ...]:
+    inputs = [series.t for series in (run.commands, run.wheels) if series is not None]
+    return (run.poses.t, *inputs)
+
+
+def _cut_run(run: Run, low: float, high: float) -> Run:
+    def inside(poses: Poses) -> Poses:
+        return poses.select((poses.t >= low) & (poses.t <= high))
+
+    extra = {}
+    if run.extra:
+        t = np.asarray(run.extra["t"], dtype=np.float64)
+        extra = {name: values[(t >= low) & (t <= high)] for name, values in run.extra.items()}
+    forces = run.forces
+    return replace(
+        run,
+        commands=_cut(run.commands, low, high),
+        wheels=_cut(run.wheels, low, high),
+        poses=inside(run.poses),
+        extra=extra,
+        others={name: inside(other) for name, other in run.others.items()},
+        forces=None if forces is None else forces.select(_held_part(forces.t, low, high)),
+    )
+
+
+def _cut(inputs: Inputs | None, low: float, high: float) -> Inputs | None:
+    cut = None if inputs is None else inputs.select(_held_part(inputs.t, low, high))
+    return cut or None
+
+
+def _held_part(t: Floats, low: float, high: float) -> slice:
+    """Return which samples lie in a span, with the one before, which still holds."""
+    held = max(int(np.searchsorted(t, low, side="right")) - 1, 0)
+    return slice(held, int(np.searchsorted(t, high, side="right")))

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from slipwise import _core
 from slipwise.logs.attitude import levelled
 from slipwise.logs.findings.course_heading import as_positions, is_course
 from slipwise.logs.findings.encoders import WheelSpikes
@@ -17,9 +18,8 @@ from slipwise.logs.findings.seen import OTHER, WORDS
 from slipwise.logs.findings.wheel_twists import DeadWheel
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Floats, LeftOut, Log, Run, has_course
+from slipwise.logs.log import Bools, Floats, Inputs, Ints, LeftOut, Log, Poses, Run, has_course
 from slipwise.logs.motion_windows import evidence_of, measured_rows, motion_windows
-from slipwise.logs.pose_jumps import find_jumps, without_jumps
 
 _HARDLY = 10.0  # times as many poses out of order as in order
 _FEW = 20  # steps; with fewer no such judgement is made
@@ -108,3 +108,44 @@ def _smooth(run: Run, unknown_after: float, tally: Tally) -> Run:
         first = float(run.poses.t[np.argmax(flags)])
         tally.add(kind, reason, count=int(flags.sum()), where=run.place(first))
     return replace(run, poses=without_jumps(run.poses, jumps))
+
+
+@dataclass(frozen=True, eq=False)
+class Jumps:
+    """What was found: poses to drop, poses that start a new frame, and the frames of those that stay."""
+
+    dropped: Bools  # [M]
+    starts: Bools  # [M]
+    frame: Ints  # [M] of the poses; meaningless where they are dropped
+
+
+def find_jumps(poses: Poses, inputs: Inputs, unknown_after: float) -> Jumps:
+    """Find jumps as the learner does while it drives: from what was measured until then.
+
+    An input is unknown once it is older than `unknown_after` [s].
+    """
+    recording = _core.Recording(np.empty((0, 4)), inputs.rows(), np.empty((0, 3)), poses.rows())
+    gated = _core.gate_poses(recording, unknown_after)
+    accepted = np.asarray(gated.accepted)
+    frame = np.zeros(len(poses), dtype=np.int64)
+    frame[_places(poses, accepted[:, 0])] = accepted[:, 4].astype(np.int64)
+    dropped, starts = np.zeros(len(poses), bool), np.zeros(len(poses), bool)
+    dropped[_places(poses, np.asarray(gated.outliers)[:, 0])] = True
+    starts[_places(poses, np.asarray(gated.jumps)[:, 0])] = True
+    return Jumps(dropped, starts, frame)
+
+
+def _places(poses: Poses, stamps: Floats) -> Ints:
+    """Return where poses with these stamps are."""
+    return np.asarray(np.searchsorted(poses.t, stamps), dtype=np.int64)
+
+
+def without_jumps(poses: Poses, jumps: Jumps) -> Poses:
+    """Drop the lone outliers, and give the poses after each lasting jump a frame of their own.
+
+    The poses as measured go along: a learner finds the jumps when it would have on a robot.
+    """
+    keep = ~jumps.dropped
+    clean = replace(poses.select(keep), frame=jumps.frame[keep])
+    object.__setattr__(clean, "measured", poses)
+    return clean

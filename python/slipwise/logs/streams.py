@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.logs.absurd_speeds import FASTEST, absurd_speeds
 from slipwise.logs.findings.finding import RefusedLogError
 from slipwise.logs.findings.readings import AbsurdSpeeds, NotInSeconds
 from slipwise.logs.fixes import NO_FIX
@@ -21,6 +20,11 @@ INCOMPLETE = "with a number missing or impossible"
 WITHOUT_FIX = "of which the receiver has no fix"
 _TOO_MANY_ABSURD = 0.1  # part of a stream; more absurd samples than this are no accident
 _STEEPEST = 2.0 * np.pi  # [rad] a roll or pitch beyond a whole turn is no angle
+NOMINAL = 20.0  # m/s or rad/s: a command, or the first sample, that is slower is always accepted
+STEP = 5.0  # m/s or rad/s: wheels that are measured, and slower, are always accepted
+FASTEST = 100.0  # m/s or rad/s: what is slower is accepted once it comes twice in a row
+LEAP = 15.0  # anything is accepted up to this many times the fastest sample before it
+_TWICE = 2.0  # a sample at most this many times the one before confirms it
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,3 +182,36 @@ def _count(stream: RawStream, wrong: Bools, tally: Tally, kind: str, reason: str
     if wrong.any():
         where = stream.place(int(stream.rows[np.argmax(wrong)]))
         tally.add(kind, f"{stream.name} {reason}", count=int(wrong.sum()), where=where)
+
+
+def absurd_speeds(values: Floats, *, measured: bool = False) -> Bools:
+    """Say which samples of a stream are absurd.
+
+    A sample is absurd if faster than `NOMINAL`, more than `LEAP` times as fast as all that were accepted
+    before it, and either faster than `FASTEST` or alone. Wheels do not step as commands may: for them `STEP`
+    stands in the place of `NOMINAL`, after the first sample. So a spike of a few times what is usual stays, a
+    log that starts at full speed loses its first sample, and no sample is judged by a later one.
+
+    Args:
+        values: one column of a stream [N] in m/s or rad/s, all finite, in order of time.
+        measured: these are speeds of wheels, not commands.
+    """
+    size = np.abs(values)
+    absurd = np.zeros(len(values), bool)
+    usual = STEP if measured else NOMINAL
+    fast = np.flatnonzero(size > usual)
+    if len(fast) == 0:
+        return absurd
+    slow = np.maximum.accumulate(np.where(size > usual, 0.0, size))  # the fastest that is always accepted
+    believed = int(np.argmax(size <= usual)) if len(fast) < len(size) else len(size)  # the first accepted
+    fastest = 0.0  # of the others that were accepted
+    for i in fast.tolist():
+        near = size[i] <= (NOMINAL if i < believed else max(usual, LEAP * max(float(slow[i]), fastest)))
+        confirmed = i > 0 and size[i] <= min(FASTEST, _TWICE * size[i - 1])
+        if not (near or confirmed):
+            absurd[i] = True
+            continue
+        if confirmed or i > believed:  # nothing stands for the very first
+            fastest = max(fastest, float(size[i]))
+        believed = min(believed, i)
+    return absurd

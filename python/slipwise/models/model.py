@@ -72,7 +72,7 @@ class Model:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the summary, and the parameters in physical units."""
-        from slipwise.models.summary_html import model_html
+        from slipwise.models.summary import model_html
 
         return model_html(self)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from html import escape
 
 from slipwise.argument_types import check_arguments
 from slipwise.models.channel_words import response_sentences
@@ -15,13 +16,14 @@ from slipwise.models.schema import HeldOut
 from slipwise.models.sensor_look import sensor_sentences
 from slipwise.models.share_words import share_sentences
 from slipwise.models.slip_words import slip_sentences
-from slipwise.number_text import estimate_text, number_text
+from slipwise.number_text import estimate_text, estimate_texts, number_text
 
 BETTER = 1.05  # times; a smaller gain over the baseline is not given as a number
 SIGNIFICANT = 2.0  # standard deviations from zero from which on an offset is said
 _AXES = {"speed": "speed", "yaw_rate": "yaw rate", "side": "each side"}
 _NO_SLIP = "What was learned is not slip: poses and inputs of the log contradict each other."
 _SENSOR_PLACES = (("sensor_x", "ahead of", "behind"), ("sensor_y", "left of", "right of"))
+_HEAD = ("parameter", "value", "std", "unit", "identified")
 
 
 @dataclass(frozen=True)
@@ -139,3 +141,29 @@ def _turn(heading: float) -> str:
 
 def _amount(parameter: PhysicalParameter) -> str:
     return f"{estimate_text(parameter.value, parameter.std)} {parameter.unit}"
+
+
+def model_html(model: Model) -> str:
+    """Return what a notebook shows of a model, as a fragment of HTML; every text in it is escaped."""
+    content, summary = model.content, summarise(model)
+    head = f"<b>{escape(content.slip.basis)}</b> learned from {escape(content.input)}s"
+    sentences = "".join(f"<li>{escape(sentence)}</li>" for sentence in summary.sentences)
+    state = "Good." if content.verdict.good else "Not good enough."
+    verdict = f"<p><b>{state}</b> {escape(content.verdict.sentence)}</p>"
+    return f"<div><p>{head}</p><ul>{sentences}</ul>{verdict}{_table(summary.parameters)}</div>"
+
+
+def _table(parameters: tuple[PhysicalParameter, ...]) -> str:
+    head = "".join(f"<th>{name}</th>" for name in _HEAD)
+    rows = "".join(_row(parameter) for parameter in parameters)
+    count = f"{len(parameters)} parameters" if len(parameters) != 1 else "1 parameter"
+    return (
+        f"<details><summary>{count}</summary><table><thead><tr>{head}</tr></thead>"
+        f"<tbody>{rows}</tbody></table></details>"
+    )
+
+
+def _row(parameter: PhysicalParameter) -> str:
+    value, std = estimate_texts(parameter.value, parameter.std)
+    cells = (parameter.name, value, std, parameter.unit, "yes" if parameter.identified else "no")
+    return "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>"

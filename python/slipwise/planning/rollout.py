@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Collection
 from dataclasses import dataclass, fields
 from typing import Any, Literal
@@ -17,7 +18,6 @@ from slipwise.models.axes import axes_of, drive_axes
 from slipwise.models.model import Model
 from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.planning.costmap import Costmap
-from slipwise.planning.device import gpu_of
 from slipwise.planning.start import Start
 from slipwise.planning.throttle import behind_curves, curve_covariance
 from slipwise.prediction import student_at
@@ -26,6 +26,7 @@ from slipwise.terrain_ahead import slip_ahead
 Numbers = NDArray[Any]  # float32 or float64
 Output = Literal["path", "end", "costs"]
 OUTPUTS: tuple[Output, ...] = ("path", "end", "costs")
+DEVICES = ("cpu", "cuda")
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,3 +252,21 @@ def _buffer(
             advice=f"give one of shape {shape} and type {dtype}, in one piece",
         )
     return given
+
+
+def gpu_of(device: str) -> _core.Gpu | None:
+    """Return the GPU that `device` names, None for the processor.
+
+    Raises:
+        SettingsError: there is no such device, or rollouts cannot run there; it says why.
+    """
+    if device not in DEVICES:
+        raise SettingsError(f"unknown device {device!r}", advice=f"known are {', '.join(DEVICES)}")
+    return None if device == "cpu" else _open_gpu()
+
+
+@functools.cache
+def _open_gpu() -> _core.Gpu:
+    if reason := _core.why_no_gpu():
+        raise SettingsError("no GPU", where="device 'cuda'", advice=reason)
+    return _core.Gpu()

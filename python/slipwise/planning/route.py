@@ -15,7 +15,6 @@ from slipwise.ground import Ground, Pose
 from slipwise.models.model import Model
 from slipwise.planning.grid_map import GridMap
 from slipwise.planning.limits import AT_REST, DriveState, Limits
-from slipwise.planning.position_ellipse import first_crossing
 from slipwise.planning.trajectory import (
     NOMINAL,
     Planner,
@@ -27,6 +26,7 @@ from slipwise.planning.trajectory import (
     uncertain_path,
 )
 from slipwise.prediction import Path
+from slipwise.student import ellipse_squared
 
 Floats = NDArray[np.float64]
 
@@ -38,6 +38,9 @@ SHORTEST_LEG, LONGEST_LEG = 0.25, 0.8  # of the longest commanded path, as the c
 GENTLE = 0.5  # of the largest curvature of commands: slip leaves less of it
 TRIED_EFFORT = 0.2  # the same for every leg that was tried from there
 BEARING_EFFORT = 1.5  # how much farther a place seems for every radian off the heading
+SHARE = 0.95  # of the positions, within the ellipse
+POINTS = 48  # of an outline
+STEP = 1.0  # cells, between the points along its half-axes
 
 
 @dataclass(frozen=True)
@@ -253,3 +256,44 @@ def _effort(node: _Node, place: Floats) -> float:
     """Return how far a place seems from a node; farther off its heading, or after many legs."""
     gap, bearing = _towards(node.pose, place)
     return gap * (1.0 + BEARING_EFFORT * abs(bearing)) * (1.0 + TRIED_EFFORT * node.tried)
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """The first ellipse that leaves what is free."""
+
+    at: int  # place among the predictions
+    half_axis: float  # m, the longer one
+
+
+def first_crossing(
+    grid: GridMap, positions: Floats, covariance: Floats, dof: Floats, yaw: float
+) -> Crossing | None:
+    """Return the first ellipse with a place that is not free, None where all are free.
+
+    Args:
+        grid: what is free.
+        positions: [K, 2] x, y in the map's frame [m].
+        covariance: [K, 2, 2] of x, y in the frame of the start [m^2].
+        dof: [K] degrees of freedom of the Student t with these covariances.
+        yaw: of the start in the map's frame [rad].
+    """
+    to_map = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
+    values, vectors = np.linalg.eigh(to_map @ covariance @ to_map.T)
+    radius = np.sqrt([ellipse_squared(SHARE, float(freedom)) for freedom in dof])
+    axes = radius[:, None] * np.sqrt(np.maximum(values, 0.0))
+    for k in range(len(positions)):
+        shape = vectors[k] * axes[k]
+        if not _is_free(grid, positions[k], shape, float(axes[k, 1])):
+            return Crossing(k, float(axes[k, 1]))
+    return None
+
+
+def _is_free(grid: GridMap, centre: Floats, shape: Floats, longer: float) -> bool:
+    if not np.isfinite(longer) or 2.0 * longer > max(grid.size):
+        return False
+    angle = np.linspace(0.0, 2.0 * np.pi, POINTS, endpoint=False)
+    rings = np.linspace(0.0, 1.0, 2 + int(longer / (STEP * grid.resolution)))
+    circle = np.column_stack((np.cos(angle), np.sin(angle)))
+    points = (rings[:, None, None] * circle).reshape(-1, 2)
+    return bool(grid.clearance_at(centre + points @ shape.T).min() > 0.0)

@@ -7,7 +7,7 @@ import numpy as np
 from limited_drives import FREE, SIDES, TRACK, search, track_of, wheels_behind
 
 from slipwise import _core
-from slipwise.calibration.limit_words import doubted_limits, limits_advice
+from slipwise.calibration.judge import doubted_limits, limits_advice
 from slipwise.logs.log import Inputs
 from slipwise_sim import steps_drive
 

@@ -14,9 +14,9 @@ from sample_models import make_model, named
 from slipwise import _core
 from slipwise.calibration import Settings, calibrate
 from slipwise.calibration.core_settings import core_settings
-from slipwise.calibration.limit_words import limits_advice
+from slipwise.calibration.judge import limits_advice
 from slipwise.export.learned_number import LearnedNumbers
-from slipwise.export.mppi_limits import dead_bands
+from slipwise.export.mppi import dead_bands
 from slipwise.export.parameter_file import Entry
 from slipwise.logs import open_log
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source

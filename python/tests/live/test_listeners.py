@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from slipwise.live.listeners import LOOK_EVERY, Listeners
+from slipwise.live.ros_transport import LOOK_EVERY, Listeners
 
 
 def test_a_listener_is_seen_at_the_next_look_and_one_look_serves_for_a_while() -> None:

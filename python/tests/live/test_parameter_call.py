@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from live.parameter_server import PARAMETERS, ParameterServer, descriptor
 
-from slipwise.live.node_parameters import NodeParameters
 from slipwise.live.outputs import AppliedParameters
-from slipwise.live.parameter_call import SET, set_request
+from slipwise.live.parameter_call import SET, NodeParameters, set_request
 from slipwise.live.wires.ros_types import ros_types
 
 

@@ -7,9 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from slipwise.errors import LogError
-from slipwise.logs.absurd_speeds import FASTEST, NOMINAL, absurd_speeds
 from slipwise.logs.left_out import Tally
-from slipwise.logs.streams import RawStream, to_inputs, to_poses
+from slipwise.logs.streams import FASTEST, NOMINAL, RawStream, absurd_speeds, to_inputs, to_poses
 
 USUAL_DRIVE = np.array([0.0, 0.5, 1.0, 1.5, 1.5, 1.0, 0.5, 0.0])
 

@@ -10,7 +10,7 @@ from slipwise.inspection import coverage_map
 from slipwise.logs import Inputs, Log, Run
 from slipwise.logs.held import HeldSum, held_for
 from slipwise.logs.motion_windows import evidence_of, motion_windows
-from slipwise.logs.pose_jumps import find_jumps
+from slipwise.logs.quality import find_jumps
 
 SLOW = held(np.arange(0.0, 20.5, 1.0), v=1.0)  # a command every second
 

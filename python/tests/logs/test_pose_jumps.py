@@ -4,7 +4,7 @@
 import numpy as np
 
 from slipwise.logs.log import Inputs, Poses
-from slipwise.logs.pose_jumps import find_jumps
+from slipwise.logs.quality import find_jumps
 
 T = np.arange(0.0, 40.0, 0.1)
 JUMP = 200  # a pose amid the drive

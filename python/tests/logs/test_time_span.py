@@ -10,7 +10,7 @@ import pytest
 
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs import Log, LogOptions, Run, open_log, save_log
-from slipwise.logs.time_span import cut_to_span
+from slipwise.logs.open_log import cut_to_span
 
 Drive = Callable[..., Run]
 

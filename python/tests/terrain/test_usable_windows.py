@@ -11,7 +11,7 @@ from sample_terrain import made_recording, made_recordings
 
 from slipwise.errors import LogError
 from slipwise.terrain import Windows, cut_windows
-from slipwise.terrain.usable_windows import folds_of, usable_windows
+from slipwise.terrain.train import folds_of, usable_windows
 from slipwise.terrain.windows import cutting_of
 
 

@@ -143,3 +143,25 @@ def state_line(status: Status) -> str:
     if left_out:
         parts.append(f"{left_out} left out")
     return clean(f"{stamp_text(status.t)}  {'; '.join(parts)}")
+
+
+class ErrorLines(Watcher):
+    """A line for every note that is an error, for a quiet node."""
+
+    def __init__(self, write: Callable[[str], None]) -> None:
+        """`write` prints one line, in a thread of its own."""
+        self._write = write
+        self._thread = OutputThread(self._show, name="slipwise-errors")
+
+    def take(self, output: Output) -> None:
+        """Print an output, if it is an error."""
+        if isinstance(output, Note) and output.error:
+            self._thread.put(output)
+
+    def close(self) -> None:
+        """Print what waits."""
+        self._thread.close()
+
+    def _show(self, output: Output) -> None:
+        if isinstance(output, Note):
+            self._write(clean(f"{stamp_text(output.t)}  {output.text}"))

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from slipwise.live.outputs import Floats, NextMovesNow, ParameterNow, Status
+from slipwise.ellipse import outline_of
+from slipwise.live.outputs import Floats, NextMovesNow, ParameterNow, Path, Status
 from slipwise.live.watch.history import Seen
-from slipwise.live.watch.path_ellipses import path_ellipses
 from slipwise.live.watch.status_texts import (
     SLIP_NAMES,
     after_text,
@@ -28,6 +28,8 @@ from slipwise.live.watch.status_texts import (
 
 _MOST_POINTS = 500  # of the driven path
 _PLACES = 3  # mm, mrad
+_RADIUS = math.sqrt(-2.0 * math.log(0.05))  # standard deviations around 95 % of a normal in a plane
+_MOST = 6
 
 
 def snapshot(seen: Seen) -> str:
@@ -145,3 +147,13 @@ def _points(rows: Floats | Sequence[Sequence[float]]) -> list[list[float | None]
 
 def _round(value: float) -> float | None:
     return round(value, _PLACES) if math.isfinite(value) else None
+
+
+def path_ellipses(path: Path) -> list[Floats]:
+    """Return closed outlines [points, 2] around 95 %, in m, at a few poses, the last among them."""
+    count = len(path.poses)
+    if count == 0:
+        return []
+    chosen = np.unique(np.linspace((count - 1) / _MOST, count - 1, _MOST).round().astype(int)).tolist()
+    outlines = (outline_of(path.poses[i, :2], path.covariance[i, :2, :2], _RADIUS) for i in chosen)
+    return [outline[::2] for outline in outlines if outline is not None]

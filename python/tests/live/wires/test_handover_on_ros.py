@@ -15,7 +15,7 @@ from sample_models import LIMITS, Made, make_model, named
 
 from slipwise.calibration.live_table import ApplyTable
 from slipwise.live.handover import Handover
-from slipwise.live.node_parameters import NodeParameters
+from slipwise.live.parameter_call import NodeParameters
 from slipwise.live.said import Said
 from slipwise.live.wires.cyclone_wire import CycloneWire
 from slipwise.live.wires.options import WireOptions

@@ -29,7 +29,7 @@ from slipwise.logs.findings.checks import findings_in, findings_of, looked_at, s
 from slipwise.logs.findings.command_stops import CommandTimeout
 from slipwise.logs.findings.seen import WholeLog
 from slipwise.logs.held import UNKNOWN_AFTER
-from slipwise.logs.time_span import cut_to_span
+from slipwise.logs.open_log import cut_to_span
 
 HALF = 30.0  # s
 SOUND = sound_log()

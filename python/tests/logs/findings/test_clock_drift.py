@@ -17,7 +17,7 @@ from slipwise.logs import Log, open_log
 from slipwise.logs.findings.clock_drift import ClockDrift
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import WholeLog
-from slipwise.logs.time_span import cut_to_span
+from slipwise.logs.open_log import cut_to_span
 
 LOG = sound_log(replace(SKID_STEERED, seconds=200.0))
 REAL = ("husky/tile_deflated_tyres", "warthog/grass_7_29_14h46s15", "f1tenth/DS4", "create/MRCLAM6_R1")

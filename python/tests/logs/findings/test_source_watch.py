@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slipwise.logs.findings.source_watch import CLOSED_FOR, SourceWatch
+from slipwise.logs.findings.sources import CLOSED_FOR, SourceWatch
 
 FAR = (0.75, 0.75)
 
