@@ -152,8 +152,8 @@ def publish(seconds: float) -> None:
     """Publish a drive in real time."""
     from slipwise.live.ros_messages import stamp_ns
     from slipwise.live.wires.cyclone_wire import CycloneWire
-    from slipwise.live.wires.options import WireOptions
     from slipwise.live.wires.ros_types import ros_types
+    from slipwise.live.wires.wire import WireOptions
 
     store = ros_types()
     t = store.types

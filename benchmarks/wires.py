@@ -26,8 +26,8 @@ from live.wires.peer import DOMAIN, Peer  # noqa: E402
 from live.wires.wire_messages import ODOMETRY, TWIST, command, wait_until  # noqa: E402
 
 from slipwise.live.wires.cyclone_wire import CycloneWire  # noqa: E402
-from slipwise.live.wires.options import WireOptions  # noqa: E402
 from slipwise.live.wires.ros_types import type_hash  # noqa: E402
+from slipwise.live.wires.wire import WireOptions  # noqa: E402
 
 _STAMP = struct.Struct("<iI")  # s, ns, behind the 4 bytes of CDR's header
 

@@ -18,7 +18,6 @@ from slipwise.calibration.learner import Progress
 from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.mounts import mounts_of
 from slipwise.calibration.plain import baseline_predictor
-from slipwise.calibration.position_settings import for_positions
 from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of
 from slipwise.calibration.prepared_run import (
     PreparedRun,
@@ -35,7 +34,7 @@ from slipwise.calibration.result import Calibration
 from slipwise.calibration.same_log import learned_before
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.shortage import shortage_advice, silence, unused_measurements, unused_wheels
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.sloping_ground import for_positions, for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import LogFacts
 from slipwise.calibration.wheel_step import WheelStep

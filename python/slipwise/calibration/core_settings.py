@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from slipwise import _core
 from slipwise.calibration.coming import Coming
 from slipwise.calibration.learning_tables import AUTO_BASES
-from slipwise.calibration.position_settings import for_positions
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.sloping_ground import for_positions
 from slipwise.calibration.source_tables import core_sources
 from slipwise.errors import SettingsError
 from slipwise.logs import LogOptions

@@ -17,16 +17,14 @@ from slipwise.calibration.judge import Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import found_limits, held_out_predictions, learned_now
-from slipwise.calibration.learner_answers import Event, event_of
+from slipwise.calibration.learner_answers import Event, MotionState, Odometry, event_of, odometry_of
 from slipwise.calibration.measurements import Measurements
 from slipwise.calibration.model_content import ModelFacts, model_content
-from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.path_ahead import PathAhead
-from slipwise.calibration.position_settings import for_positions
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
 from slipwise.calibration.sideways_seen import SidewaysSeen
-from slipwise.calibration.sloping_ground import for_ground
+from slipwise.calibration.sloping_ground import for_ground, for_positions
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts

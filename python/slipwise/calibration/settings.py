@@ -36,8 +36,7 @@ from slipwise.calibration.source_tables import PoseSourceTable
 from slipwise.errors import OlderNames, SettingsError
 from slipwise.files import read_whole
 from slipwise.logs.options import LogOptions
-from slipwise.models.renamed_keys import with_new_keys
-from slipwise.models.upgrade import RENAMED_SETTINGS
+from slipwise.models.upgrade import RENAMED_SETTINGS, with_new_keys
 from slipwise.segments import WindowRules
 from slipwise.validation_text import first_problem
 

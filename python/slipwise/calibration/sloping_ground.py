@@ -5,8 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise.calibration.learning_tables import AUTO_BASES
-from slipwise.calibration.position_settings import for_positions
+from slipwise.calibration.learning_tables import AUTO_BASES, SEGMENT_SECONDS, NoiseTable
 from slipwise.calibration.settings import Settings
 from slipwise.errors import LogError
 from slipwise.logs.attitude import was_measured
@@ -18,6 +17,11 @@ SLOPE_BASES = ("odd-even-13", "drive-9")
 #: The same where the vehicle drives sideways.
 SIDEWAYS_BASES = ("omni-8",)
 SIDEWAYS_SPEED, SIDEWAYS_PART = 0.05, 0.01  # m/s, and part of the inputs that are faster to a side
+SEGMENT = 5.0  # s; positions tell only together how the robot turns. Those that tell it sooner end at half
+# Of the default noise of slip. That of positions stands beside it, known by how far they scatter about the
+# fitted way; where that of slip were much larger, it would hide what they tell of turns.
+QUIET = 0.25
+RESIDUALS = 2.0  # of a segment, independent: along, and across together with the turn
 
 
 def has_attitude(log: Log) -> bool:
@@ -87,3 +91,23 @@ def for_ground(settings: Settings, *, slopes: bool, sideways: bool) -> Settings:
         return settings
     bases = [*AUTO_BASES, *more]
     return settings.model_copy(update={"auto": settings.auto.model_copy(update={"bases": bases})})
+
+
+def for_positions(settings: Settings) -> Settings:
+    """Return settings with segments of 5 s, and a smaller noise of slip where it is the default.
+
+    Given its own answer it changes nothing.
+    """
+    segment, noise, usual = settings.segment, settings.noise, NoiseTable()
+    length = segment.length or max(SEGMENT_SECONDS.values())
+    changed = {
+        name: [factor * number for number in getattr(usual, name)]
+        for name, factor in (("psd_motion", QUIET**2), ("fraction", QUIET))
+        if getattr(noise, name) == getattr(usual, name)
+    }
+    return settings.model_copy(
+        update={
+            "segment": segment.model_copy(update={"length": max(length, SEGMENT)}),
+            "noise": noise.model_copy(update=changed),
+        }
+    )

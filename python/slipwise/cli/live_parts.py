@@ -176,7 +176,7 @@ def _of_lines(table: LiveTable, options: LogOptions, source: Source, say: Callab
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
     from slipwise.live.ros_robot import find_robot
     from slipwise.live.wires.make_wire import make_wire
-    from slipwise.live.wires.options import WireOptions
+    from slipwise.live.wires.wire import WireOptions
 
     named = WireOptions(node_name=table.node, domain=table.domain, network=table.network)
     wire = make_wire(None if table.transport in (None, "ros") else table.transport, named)

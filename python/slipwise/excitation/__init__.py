@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The drive that teaches most: held commands that make the worst prediction as sure as they can."""
 
-from slipwise.excitation.command_bag import write_command_bag
 from slipwise.excitation.command_space import CommandSpace
-from slipwise.excitation.command_table import command_inputs, write_commands
+from slipwise.excitation.command_table import command_inputs, write_command_bag, write_commands
 from slipwise.excitation.design import Excitation, ExcitationOptions, design_drive
 from slipwise.excitation.knowledge import Knowledge, knowledge_of, prior_knowledge
 from slipwise.excitation.lessons import Lesson, lessons_of

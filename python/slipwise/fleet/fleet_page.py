@@ -21,7 +21,7 @@ from slipwise.fleet.log_kinds import logs_of_kinds
 from slipwise.fleet.vehicle_numbers import logs_of, types_apart
 from slipwise.models.parameter_table import physical_name
 from slipwise.number_text import DASH, count_text
-from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
+from slipwise.reporting.figure import CURVE_POINTS, Figure, axis, baseline_label, numbers, thinned
 from slipwise.reporting.markup import (
     bullets,
     details,
@@ -34,7 +34,6 @@ from slipwise.reporting.markup import (
     table,
 )
 from slipwise.reporting.page import Part, page_of
-from slipwise.reporting.thinning import CURVE_POINTS, thinned
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7a4fa3", "#4d4d4d")
 FLEET = "#1b2430"

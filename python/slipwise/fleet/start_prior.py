@@ -1,19 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What learning of the next robot begins with: mean and covariance over a fleet's robots, basis by basis."""
+"""What learning of the next robot begins with: mean and covariance over a fleet's robots, by basis."""
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+import yaml
 from numpy.typing import NDArray
 
 from slipwise.calibration.log_knowledge import LearnedNormal, LogKnowledge, StructureKnowledge
+from slipwise.files import write_text_whole
 from slipwise.fleet.empirical_bayes import FleetPrior, fleet_prior
-from slipwise.fleet.findings import STUDENT_DOF
-from slipwise.models.fleet_prior import BasisPrior, RobotPrior, StartPrior
+from slipwise.fleet.findings import STUDENT_DOF, ParameterFindings
+from slipwise.models.fleet_prior import (
+    PRIOR_SCHEMA,
+    BasisPrior,
+    FleetPriorFile,
+    ParameterPrior,
+    RobotPrior,
+    StartPrior,
+)
 
 Floats = NDArray[np.float64]
 
@@ -184,3 +195,42 @@ def _robot(chosen: Sequence[tuple[str, StructureKnowledge]]) -> RobotPrior | Non
 
 def _most(names: Sequence[str]) -> str:
     return Counter(names).most_common(1)[0][0]
+
+
+def write_prior(
+    path: Path,
+    findings: Sequence[ParameterFindings],
+    knowledge: Sequence[KnownLog] = (),
+    *,
+    vehicle_type: str = "",
+) -> Path:
+    """Write the prior of a robot of this fleet as a YAML file; return the path.
+
+    Parameters of a single vehicle are left out: one robot says nothing of the next.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    parameters = {
+        each.parameter: ParameterPrior(
+            unit=each.unit,
+            mean=float(each.prior.mean[0]),
+            std=math.sqrt(float(each.prior.new_robot[0, 0])),
+            between_robots_std=math.sqrt(float(each.prior.between[0, 0])),
+            robots=len(each.vehicles),
+        )
+        for each in findings
+        if each.prior is not None
+    }
+    head = "# The prior of a robot of this fleet before its first log; units as in model files.\n"
+    content = FleetPriorFile(
+        slipwise_fleet_prior=PRIOR_SCHEMA,
+        type=vehicle_type,
+        robots=len({vehicle for vehicle, _ in knowledge}),
+        logs=len(knowledge),
+        parameters=parameters,
+        start=start_prior(knowledge),
+    ).model_dump()
+    text = yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=120)
+    write_text_whole(path, head + text)
+    return path

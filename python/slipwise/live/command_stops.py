@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds live that a robot's watchdog ends commands that are not repeated, as it is found of a whole log."""
+"""A robot's watchdog ends commands that are not repeated: live it is found, and followed, as in a log."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 
-from slipwise.live.samples import Command, Pose
+from slipwise.live.samples import Command, Pose, Stamped
+from slipwise.logs.command_timeout import end_stamps
 from slipwise.logs.findings.command_stops import CommandStops
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.log import Inputs, Poses
@@ -16,6 +17,7 @@ WAIT = 1.0  # s; a command may come so much later than a pose of its stamp
 _AT_ONCE = 200  # poses
 SAID_EVERY = 60.0  # s between looks
 _MOST = 20_000  # that wait where no command comes
+COMES_WITHIN = 0.1  # s; a command may come so much later than a sample of another stream with its stamp
 
 
 class LiveCommandStops:
@@ -74,3 +76,36 @@ class LiveCommandStops:
         self._stops.add(Inputs(*commands), Poses(t, x, y, yaw, frame.astype(np.int64)))
         self._poses = self._poses[len(ready) - 1 :]
         self._commands = self._commands[len(known) - 1 :]
+
+
+class CommandEnds:
+    """Gives zeros after each command that is not repeated, with the stamps that a log of the same drive has.
+
+    Args:
+        seconds: after which a command ends; None: it is held.
+    """
+
+    def __init__(self, seconds: float | None) -> None:
+        self._seconds = seconds
+        self._given: float | None = None  # s, stamp of the last command
+        self._ended = -math.inf  # s, stamp of the last zero
+
+    def before(self, sample: Stamped) -> list[Command]:
+        """Return the zeros that are due before a sample."""
+        seconds, t = self._seconds, sample.t
+        if seconds is None or not math.isfinite(t):
+            return []
+        due: list[Command] = []
+        if self._given is not None:
+            until = t if isinstance(sample, Command) else t - COMES_WITHIN
+            due = [
+                Command(at, 0.0, 0.0) for at in end_stamps(self._given, seconds, until) if at > self._ended
+            ]
+            self._ended = due[-1].t if due else self._ended
+        if isinstance(sample, Command):
+            self._given = t
+        return due
+
+    def restart(self) -> None:
+        """Another recording begins, or the clock was set."""
+        self._given, self._ended = None, -math.inf

@@ -10,8 +10,7 @@ from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.sloping_ground import takes_ground_for_level
 from slipwise.live.clock_watch import ClockWatch
-from slipwise.live.command_ends import CommandEnds
-from slipwise.live.command_stops import SAID_EVERY, LiveCommandStops
+from slipwise.live.command_stops import SAID_EVERY, CommandEnds, LiveCommandStops
 from slipwise.live.gates import Gates
 from slipwise.live.move_adviser import Turning
 from slipwise.live.pose_steps import PoseSteps

@@ -29,7 +29,7 @@ from slipwise.logs.foxglove_file import open_bag
 from slipwise.logs.gyro import with_gyro
 from slipwise.logs.joints import SideMotion, sides_text
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Inputs, Ints, Log, Run, Source, empty_poses
+from slipwise.logs.log import Inputs, Ints, Log, Run, Source, empty_poses, run_name
 from slipwise.logs.messages import (
     COMMAND_VALUES,
     FORCE_VALUES,
@@ -48,7 +48,6 @@ from slipwise.logs.messages import (
 )
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import Topic
-from slipwise.logs.run_name import run_name
 from slipwise.logs.streams import RawStream, to_forces, to_inputs, to_poses
 from slipwise.logs.topics import Roles, choose_topics, transforms_matter
 from slipwise.logs.transforms import (

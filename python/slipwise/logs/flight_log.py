@@ -12,9 +12,8 @@ from slipwise.errors import LogError
 from slipwise.files import sha256_of
 from slipwise.logs.flight_roles import FlightMessages, FlightStream, FlightStreams
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Log, Run, Source
+from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Log, Run, Source, run_name
 from slipwise.logs.options import LogOptions
-from slipwise.logs.run_name import run_name
 from slipwise.logs.streams import RawStream, to_inputs, to_poses
 
 DATAFLASH, TLOG, ULOG = "dataflash", "tlog", "ulog"

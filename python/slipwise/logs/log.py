@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -301,3 +302,11 @@ def _check_series(series: Inputs | Poses | Forces, *, required: tuple[str, ...])
         raise LogError(
             f"{name}.t does not increase", where=f"entry {first}", advice="sort and thin the samples"
         )
+
+
+def run_name(path: Path) -> str:
+    """Return the name of a run that has none: the file's, without its endings."""
+    name = path.name
+    for ending in (".gz", ".csv", ".parquet", ".mcap", ".db3", ".bag", ".bin", ".tlog", ".ulg"):
+        name = name.removesuffix(ending)
+    return name or "run"

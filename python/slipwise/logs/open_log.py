@@ -18,11 +18,10 @@ from slipwise.argument_types import check_arguments
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.command_timeout import with_ended_commands
 from slipwise.logs.corrections import scaled_inputs, turned_poses
-from slipwise.logs.log import Floats, Inputs, Log, Poses, Run
+from slipwise.logs.log import Floats, Inputs, Log, Poses, Run, run_name
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
 from slipwise.logs.remote import local_file
-from slipwise.logs.run_name import run_name
 from slipwise.models.axes import sideways_span
 
 _KNOWN = (

@@ -30,11 +30,11 @@ from slipwise.logs.log import (
     Run,
     Source,
     empty_poses,
+    run_name,
 )
 from slipwise.logs.navsat import with_course
 from slipwise.logs.options import LogOptions
 from slipwise.logs.pose_file import refuse_poses_alone
-from slipwise.logs.run_name import run_name
 from slipwise.logs.streams import (
     RawStream,
     clean_stream,

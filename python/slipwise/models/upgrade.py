@@ -13,7 +13,6 @@ from slipwise.models.body_force import force_names
 from slipwise.models.car import CarSection, car_rows, older_car
 from slipwise.models.limits import LimitsSection, limit_rows
 from slipwise.models.parameter_table import stage_of
-from slipwise.models.renamed_keys import RenamedKeys, with_new_keys
 from slipwise.models.schema import SCHEMA_VERSION, Parameter
 
 Floats = NDArray[np.float64]
@@ -50,6 +49,10 @@ _RENAMED: RenamedKeys = {
     **{f"provenance.settings.{place}".rstrip("."): names for place, names in RENAMED_SETTINGS.items()},
 }
 _PARAMETER = re.compile(r"^(log_)?(slow_)?(lag|share)_(v|omega)$")
+
+
+#: Names since, by the older ones, by where these stand; a `*` stands for any key or place in a list.
+RenamedKeys = Mapping[str, Mapping[str, str]]
 
 
 def upgraded(content: Mapping[str, object]) -> dict[str, object]:
@@ -143,3 +146,32 @@ def _named(value: object) -> object:
 def _parameter(found: re.Match[str]) -> str:
     kind = {"lag": "time_constant", "share": "fraction"}[found[3]]
     return f"{found[1] or ''}{found[2] or ''}{kind}_{found[4]}"
+
+
+def with_new_keys(content: object, renamed: RenamedKeys, place: tuple[str, ...] = ()) -> object:
+    """Return `content` with every older key replaced; all else stays as it is.
+
+    Args:
+        content: dictionaries, lists and values, such as a YAML or TOML file gives.
+        renamed: the new names of keys, by the old place of their dictionary: its keys joined by dots.
+        place: the keys that lead to `content` in the document.
+    """
+    if isinstance(content, dict):
+        names = _names_at(place, renamed)
+        return {
+            names.get(str(key), key): with_new_keys(value, renamed, (*place, str(key)))
+            for key, value in content.items()
+        }
+    if isinstance(content, list):
+        return [with_new_keys(value, renamed, (*place, "*")) for value in content]
+    return content
+
+
+def _names_at(place: tuple[str, ...], renamed: RenamedKeys) -> dict[str, str]:
+    """The names for the dictionary at a place: those of every pattern that is of it."""
+    found: dict[str, str] = {}
+    for pattern, names in renamed.items():
+        wanted = pattern.split(".") if pattern else []
+        if len(wanted) == len(place) and all(b in ("*", a) for a, b in zip(place, wanted, strict=True)):
+            found |= names
+    return found

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from slipwise.reporting.markup import escape
 
@@ -27,6 +27,8 @@ _AXIS = {
     "automargin": True,
 }
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"}
+CURVE_POINTS = 400  # of one curve over the page; more cannot be distinguished on a screen
+SMALL_POINTS = 150  # of one curve in a small figure
 
 
 @dataclass(frozen=True)
@@ -190,3 +192,17 @@ def _plain(value: Any) -> Any:
         return None
     rounded = float(f"{real:.{DIGITS}g}")
     return int(rounded) if rounded.is_integer() and abs(rounded) < 1e9 else rounded
+
+
+def thinned(length: int, limit: int = CURVE_POINTS) -> NDArray[np.int64]:
+    """Return the indices of at most `limit` evenly spaced entries, the first and the last among them."""
+    if length <= limit:
+        return np.arange(length, dtype=np.int64)
+    return np.unique(np.linspace(0, length - 1, limit).round().astype(np.int64))
+
+
+def thinning_note(length: int, limit: int = CURVE_POINTS) -> str:
+    """Return the sentence that says how a curve was thinned, empty where it was not."""
+    if length <= limit:
+        return ""
+    return f"Drawn thinned: {limit} evenly spaced of {length} points."

@@ -10,10 +10,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.reporting.figure import Figure, axis, baseline_label, curve, vertical_lines
+from slipwise.reporting.figure import (
+    SMALL_POINTS,
+    Figure,
+    axis,
+    baseline_label,
+    curve,
+    thinned,
+    thinning_note,
+    vertical_lines,
+)
 from slipwise.reporting.markup import legend
 from slipwise.reporting.palette import ALARM_COLOUR, BAND, MEASURED, surface_colour, transparent
-from slipwise.reporting.thinning import SMALL_POINTS, thinned, thinning_note
 
 Floats = NDArray[np.float64]
 UNNAMED = "not named"  # too short a visit to be remembered, or not decided

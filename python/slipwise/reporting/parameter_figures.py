@@ -13,10 +13,17 @@ from numpy.typing import NDArray
 from slipwise.models.parameter_table import physical_name, physical_parameters
 from slipwise.models.schema import Parameter
 from slipwise.reporting.contents import Contents
-from slipwise.reporting.figure import Figure, axis, baseline_label, curve
+from slipwise.reporting.figure import (
+    SMALL_POINTS,
+    Figure,
+    axis,
+    baseline_label,
+    curve,
+    thinned,
+    thinning_note,
+)
 from slipwise.reporting.markup import details, grid, legend, number, paragraph
 from slipwise.reporting.palette import LEARNED_STROKE, transparent
-from slipwise.reporting.thinning import SMALL_POINTS, thinned, thinning_note
 from slipwise.reporting.timeline import Timeline, with_breaks
 
 _MOST_PARAMETERS = 12

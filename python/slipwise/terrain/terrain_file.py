@@ -16,11 +16,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from slipwise.errors import ModelError
 from slipwise.files import read_whole, write_text_whole
 from slipwise.terrain.classifier import UNKNOWN, TerrainClassifier
-from slipwise.terrain.current_features import CURRENT_FEATURES
+from slipwise.terrain.features import CURRENT_FEATURES, vibration_names
 from slipwise.terrain.kernel_expert import NEAREST, KernelExpert
 from slipwise.terrain.pool import Pool, Rejection
 from slipwise.terrain.tree_expert import LEAF, Tree, TreeExpert
-from slipwise.terrain.vibration_features import vibration_names
 from slipwise.terrain.windows import Cutting
 from slipwise.validation_text import first_problem
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.terrain.current_features import CURRENT_FEATURES
+from slipwise.terrain.features import CURRENT_FEATURES
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

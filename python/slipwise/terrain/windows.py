@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import LogError
-from slipwise.terrain.current_features import CURRENT_FEATURES, current_features
+from slipwise.terrain.features import CURRENT_FEATURES, current_features, vibration_features, vibration_names
 from slipwise.terrain.recordings import Floats, Recording, Stream
-from slipwise.terrain.vibration_features import vibration_features, vibration_names
 
 SAME_RATE = 1.25  # rates that differ by less are one
 

@@ -25,7 +25,7 @@ from slipwise.calibration import calibrate, make_settings
 from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.errors import LogError, SettingsError
 from slipwise.live.build import build_node
-from slipwise.live.command_ends import WAIT, CommandEnds
+from slipwise.live.command_stops import COMES_WITHIN, CommandEnds
 from slipwise.live.replay import samples_of
 from slipwise.live.samples import Command, Pose
 from slipwise.logs import Inputs, LogOptions, Poses, open_log
@@ -133,7 +133,7 @@ def test_live_ends_commands_at_the_stamps_of_the_log(tmp_path: Path) -> None:
     for sample in sorted(samples, key=lambda each: each.t):
         stamps += [zero.t for zero in ends.before(sample)]
         stamps += [sample.t] if isinstance(sample, Command) else []
-    until = before.poses.t[-1] - WAIT
+    until = before.poses.t[-1] - COMES_WITHIN
     np.testing.assert_array_equal(stamps, after.commands.t[: len(stamps)])
     assert after.commands.t[len(stamps) :].min(initial=np.inf) >= until
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from slipwise.logs.run_name import run_name
+from slipwise.logs.log import run_name
 
 
 def test_a_run_is_named_by_its_file_without_the_endings_of_logs(subtests: pytest.Subtests) -> None:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from slipwise.reporting.thinning import thinned, thinning_note
+from slipwise.reporting.figure import thinned, thinning_note
 
 
 def test_long_curve_keeps_its_ends_and_says_so() -> None:

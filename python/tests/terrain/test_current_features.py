@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slipwise.terrain.current_features import CURRENT_FEATURES, current_features
+from slipwise.terrain.features import CURRENT_FEATURES, current_features
 
 
 def made(left: float, right: float, speed: float) -> dict[str, float]:

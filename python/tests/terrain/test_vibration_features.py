@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from slipwise.terrain.vibration_features import vibration_features, vibration_names
+from slipwise.terrain.features import vibration_features, vibration_names
 
 RATE = 100.0
 

@@ -20,8 +20,8 @@ from slipwise.live.node import LiveNode
 from slipwise.live.outputs import Note, Output
 from slipwise.live.ros_robot import find_robot
 from slipwise.live.samples import Answer, Request
-from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.rclpy_wire import RclpyWire
+from slipwise.live.wires.wire import WireOptions
 from slipwise.logs import LogOptions
 
 Kind = Literal["apply", "predict", "freeze", "resume", "save"]

@@ -6,8 +6,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from slipwise.live.wires.quality import Quality
 from slipwise.live.wires.ros_types import ros_type
+from slipwise.live.wires.wire import Quality
 
 _ALIVE = 16  # DDS_ALIVE_INSTANCE_STATE
 

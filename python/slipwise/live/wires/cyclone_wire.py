@@ -17,11 +17,8 @@ from slipwise.live.wires.cyclone_graph import PARTICIPANT_DATA, CycloneGraph, en
 from slipwise.live.wires.cyclone_service import CycloneService
 from slipwise.live.wires.cyclone_types import cyclone_type
 from slipwise.live.wires.delivery import Delivery
-from slipwise.live.wires.options import WireOptions
-from slipwise.live.wires.quality import Quality, hearing_all
 from slipwise.live.wires.silence import PublisherSeen, SilenceWatch
-from slipwise.live.wires.topic_names import require_topic
-from slipwise.live.wires.wire import OnMessage, WireTopic
+from slipwise.live.wires.wire import OnMessage, Quality, WireOptions, WireTopic, hearing_all, require_topic
 
 _log = logging.getLogger(__name__)
 _DEPTH = 1000  # messages kept for who is busy, on either side: 10 s at 100 Hz

@@ -7,8 +7,7 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from slipwise.errors import SettingsError
-from slipwise.live.wires.options import WireOptions
-from slipwise.live.wires.wire import RosWire
+from slipwise.live.wires.wire import RosWire, WireOptions
 
 # Name, what has to be importable, where the wire is, how to get what it needs. The first one wins.
 _WIRES = (

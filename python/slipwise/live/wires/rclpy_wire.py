@@ -13,12 +13,9 @@ from typing import Any
 
 from slipwise.errors import SettingsError
 from slipwise.live.wires.delivery import Delivery
-from slipwise.live.wires.options import WireOptions
-from slipwise.live.wires.quality import Quality, hearing_all
 from slipwise.live.wires.rclpy_inbox import left_to_us, take_all
 from slipwise.live.wires.silence import PublisherSeen, SilenceWatch
-from slipwise.live.wires.topic_names import require_topic
-from slipwise.live.wires.wire import OnMessage, WireTopic
+from slipwise.live.wires.wire import OnMessage, Quality, WireOptions, WireTopic, hearing_all, require_topic
 
 _log = logging.getLogger(__name__)
 _DEPTH = 1000  # messages kept for who is busy, on either side

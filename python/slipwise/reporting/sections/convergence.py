@@ -12,11 +12,18 @@ from slipwise.calibration.result import History
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, physical_parameters
 from slipwise.number_text import count_text, estimate_text
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.figure import Figure, axis, baseline_label, curve, vertical_lines
+from slipwise.reporting.figure import (
+    SMALL_POINTS,
+    Figure,
+    axis,
+    baseline_label,
+    curve,
+    thinned,
+    vertical_lines,
+)
 from slipwise.reporting.markup import MINUS, details, grid, legend, missing, paragraph, table
 from slipwise.reporting.palette import ALARM_COLOUR, Stroke, stroke_of, transparent
 from slipwise.reporting.parameter_figures import parameter_figures
-from slipwise.reporting.thinning import SMALL_POINTS, thinned
 from slipwise.reporting.timeline import Timeline
 
 _MOST_ALARMS = 6

@@ -11,9 +11,17 @@ import numpy as np
 from slipwise.logs.log import Floats, Run
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
 from slipwise.reporting.contents import Contents
-from slipwise.reporting.figure import TOP_BAR_MARGIN, Figure, axis, curve, numbers, top_colour_bar
+from slipwise.reporting.figure import (
+    TOP_BAR_MARGIN,
+    Figure,
+    axis,
+    curve,
+    numbers,
+    thinned,
+    thinning_note,
+    top_colour_bar,
+)
 from slipwise.reporting.palette import MEASURED, SEQUENTIAL
-from slipwise.reporting.thinning import thinned, thinning_note
 from slipwise.reporting.timeline import Timeline
 
 _MOST_MAPS = 6

@@ -10,11 +10,18 @@ import numpy as np
 
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import PLAIN, SIMPLE, Contents
-from slipwise.reporting.figure import Figure, axis, baseline_label, curve
+from slipwise.reporting.figure import (
+    CURVE_POINTS,
+    Figure,
+    axis,
+    baseline_label,
+    curve,
+    thinned,
+    thinning_note,
+)
 from slipwise.reporting.markup import grid, legend, missing
 from slipwise.reporting.method_names import label
 from slipwise.reporting.palette import stroke_of
-from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
 from slipwise.reporting.timeline import Timeline, with_breaks
 
 

@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 from slipwise.calibration.statistics import nis_band
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import Contents
-from slipwise.reporting.figure import Figure, axis, curve, numbers
+from slipwise.reporting.figure import Figure, axis, curve, numbers, thinned, thinning_note
 from slipwise.reporting.markup import grid, legend, missing, paragraph
 from slipwise.reporting.method_names import label
 from slipwise.reporting.palette import LEARNED_STROKE, MEASURED, transparent
-from slipwise.reporting.thinning import thinned, thinning_note
 from slipwise.reporting.timeline import Timeline
 from slipwise.reporting.uncertainty import honesty_of
 from slipwise.student import ellipsoid_squared

@@ -16,12 +16,11 @@ from slipwise.ellipse import ellipse
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.figure import Figure, axis, baseline_label, curve
+from slipwise.reporting.figure import Figure, axis, baseline_label, curve, thinned
 from slipwise.reporting.markup import details, grid, legend, missing, number, paragraph
 from slipwise.reporting.method_names import BASELINE, label
 from slipwise.reporting.palette import MEASURED, stroke_of, transparent
 from slipwise.reporting.sections.drive_map import HEIGHT, drive_maps
-from slipwise.reporting.thinning import thinned
 from slipwise.reporting.timeline import Timeline
 from slipwise.reporting.window_paths import WindowPaths, window_paths
 

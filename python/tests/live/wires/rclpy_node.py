@@ -15,8 +15,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from std_msgs.msg import String
 
 from slipwise.errors import SettingsError
-from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.rclpy_wire import RclpyWire
+from slipwise.live.wires.wire import WireOptions
 
 TWIST = "geometry_msgs/msg/TwistStamped"
 

@@ -23,9 +23,8 @@ from live.wires.wire_messages import (
 
 from slipwise.errors import SettingsError
 from slipwise.live.wires.cyclone_wire import CycloneWire
-from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.ros_types import type_hash
-from slipwise.live.wires.wire import OnMessage
+from slipwise.live.wires.wire import OnMessage, WireOptions
 
 pytest.importorskip("cyclonedds")
 

@@ -18,8 +18,8 @@ from slipwise.live.handover import Handover
 from slipwise.live.parameter_call import NodeParameters
 from slipwise.live.said import Said
 from slipwise.live.wires.cyclone_wire import CycloneWire
-from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.ros_types import ros_types
+from slipwise.live.wires.wire import WireOptions
 
 pytest.importorskip("cyclonedds")
 pytestmark = pytest.mark.slow

@@ -9,7 +9,7 @@ from live.wires.peer import DOMAIN
 from slipwise.errors import SettingsError
 from slipwise.live.wires import make_wire as module
 from slipwise.live.wires.make_wire import WIRE_NAMES, make_wire, wires_at_hand
-from slipwise.live.wires.options import WireOptions
+from slipwise.live.wires.wire import WireOptions
 
 
 def install(monkeypatch: pytest.MonkeyPatch, *packages: str) -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from slipwise.errors import SettingsError
-from slipwise.live.wires.options import WireOptions
+from slipwise.live.wires.wire import WireOptions
 
 
 def test_the_domain_given_wins_over_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:

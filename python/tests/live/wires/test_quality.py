@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from slipwise.live.wires.quality import Quality, hearing_all
+from slipwise.live.wires.wire import Quality, hearing_all
 
 BEST_EFFORT = Quality(reliable=False, latched=False)
 USUAL = Quality(reliable=True, latched=False)

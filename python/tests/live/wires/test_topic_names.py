@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from slipwise.errors import SettingsError
-from slipwise.live.wires.topic_names import require_topic
+from slipwise.live.wires.wire import require_topic
 
 
 @pytest.mark.parametrize("name", ["/odom", "/robot_1/cmd_vel", "/_hidden/a/b"])
