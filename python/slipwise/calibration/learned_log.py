@@ -14,7 +14,6 @@ from slipwise.calibration.coming import coming_of_runs
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import LIMITS, STRUCTURES, Posterior, Progress, posterior_of
-from slipwise.calibration.measured_body import measured_body
 from slipwise.calibration.predictions import Predictions, residual
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.prepared_run import PreparedRun
@@ -23,6 +22,7 @@ from slipwise.calibration.settings import Settings
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_course import course_of
 from slipwise.logs.log import Run
+from slipwise.models.schema import MeasuredBody
 from slipwise.segments import car_prior, recording_of, source_names, wheelbase_of
 
 Floats = NDArray[np.float64]
@@ -201,8 +201,6 @@ def _kept_posterior(model: _core.LearnedModel, found: _core.ActuatorLimits | Non
 
 
 LEARNED = _core.EventKind.SegmentLearned
-
-
 Cue = tuple[float, str | _core.TerrainAnswer]  # a stamp [s], and the surface by name or what a sensor says
 
 
@@ -348,4 +346,19 @@ def _history(
         structures=STRUCTURES if several else (),
         structure_weight=np.array([event.weights for event in events]) if several else None,
         surfaces=course_of(events, run, alarm),
+    )
+
+
+def measured_body(model: _core.LearnedModel) -> MeasuredBody:
+    """Return what the learner measured beside what it learned."""
+    rates = model.rates
+    backward, forward = rates.speed
+    right, left = rates.yaw_rate
+    return MeasuredBody(
+        speed=[0.0 - backward, forward],
+        yaw_rate=[0.0 - right, left],
+        acceleration=list(rates.acceleration),
+        yaw_acceleration=list(rates.turning),
+        held=list(model.held),
+        seconds=rates.seconds,
     )

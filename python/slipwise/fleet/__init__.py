@@ -5,8 +5,7 @@ from slipwise.fleet.empirical_bayes import FleetPrior, fleet_prior
 from slipwise.fleet.find_logs import LogTask, find_logs
 from slipwise.fleet.findings import Finding, ParameterFindings, findings_of
 from slipwise.fleet.learned_rows import LogRows, learn_task
-from slipwise.fleet.process_scheduler import ProcessScheduler
-from slipwise.fleet.scheduler import Outcome, Scheduler
+from slipwise.fleet.process_scheduler import Outcome, ProcessScheduler, Scheduler
 from slipwise.fleet.start_prior import write_prior
 from slipwise.fleet.store import Row, Store
 

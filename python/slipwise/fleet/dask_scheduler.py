@@ -10,7 +10,7 @@ from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.extras import to_install
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.learned_rows import LogRows, learn_task
-from slipwise.fleet.scheduler import DIED, Outcome
+from slipwise.fleet.process_scheduler import DIED, Outcome
 
 AT_ONCE = 1000  # tasks that the cluster is given ahead, so that the driver's memory stays bounded
 PATIENCE = 20.0  # s until a scheduler that does not answer counts as not there

@@ -13,7 +13,7 @@ from slipwise.addresses import masked, remote_url, shown
 from slipwise.calibration import Settings, load_settings
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.learned_rows import LogRows, key_of, log_hash, settings_hash
-from slipwise.fleet.scheduler import Scheduler
+from slipwise.fleet.process_scheduler import Scheduler
 from slipwise.fleet.store import Store
 
 

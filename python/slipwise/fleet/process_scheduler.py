@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Learns logs in processes of this machine; one that dies costs its own log only."""
+"""Schedulers hand many logs to workers; the one here learns them in processes of this machine."""
 
 from __future__ import annotations
 
@@ -9,15 +9,18 @@ import tempfile
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from typing import Protocol
 
 from slipwise.errors import SettingsError
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.learned_rows import LogRows, learn_task
-from slipwise.fleet.scheduler import ATTEMPTS, DIED, Outcome
 from slipwise.stop_signals import kept_from_children
 
 PATIENCE = 10.0  # s for a worker to end
 Work = Callable[[LogTask], LogRows]
+DIED = "the worker died on this log"
+ATTEMPTS = 2  # a log that kills its worker this often is left out
 
 
 class ProcessScheduler:
@@ -101,3 +104,23 @@ def _end(pools: Iterable[ProcessPoolExecutor]) -> None:
             process.terminate()
         for process in processes:
             process.join(PATIENCE)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one log: rows, or the reason why there are none."""
+
+    task: LogTask
+    rows: LogRows | None
+    failure: str = ""
+
+
+class Scheduler(Protocol):
+    """Runs `learn_task` on every task, somewhere."""
+
+    def run(self, tasks: Iterable[LogTask]) -> Generator[Outcome, None, None]:
+        """Yield the outcome of each task as it is done, in any order.
+
+        A worker that dies costs its own log only. Closing the iterator ends the workers.
+        """
+        ...

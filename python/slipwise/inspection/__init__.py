@@ -3,13 +3,11 @@
 
 from slipwise.inspection.coverage_map import coverage_map
 from slipwise.inspection.data_card import Stated
-from slipwise.inspection.inspect_log import Inspection, inspect_files, inspect_log
+from slipwise.inspection.inspect_log import Inspection, Stream, Timing, inspect_files, inspect_log
 from slipwise.inspection.learnability import Learnability, LearnableParameter
 from slipwise.inspection.next_drive import next_drive
 from slipwise.inspection.shared_set import files_beside, write_beside
-from slipwise.inspection.streams import Stream
 from slipwise.inspection.strict_check import Departure, check_strictly
-from slipwise.inspection.timing import Timing
 
 __all__ = [
     "Departure",

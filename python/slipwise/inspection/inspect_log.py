@@ -3,9 +3,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
 
 from slipwise.calibration import Settings
 from slipwise.calibration.learned import Learned
@@ -14,12 +18,13 @@ from slipwise.calibration.settings import AVERAGE
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.errors import LogError
 from slipwise.inspection.coverage_map import coverage_map
-from slipwise.inspection.learnability import Learnability, learnability_of
-from slipwise.inspection.streams import Stream, streams_of
-from slipwise.inspection.timing import Timing, timing_of
+from slipwise.inspection.learnability import Learnability, LearnableParameter, learnability_of
 from slipwise.logs import Log, LogOptions, Survey, open_log, survey_log
 from slipwise.logs.findings.diagnose import each_once
 from slipwise.logs.findings.finding import Finding, RefusedLogError
+from slipwise.segments import WindowRules
+
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -105,3 +110,99 @@ def inspect_log(log: Log, settings: Settings | None = None, *, keep: bool = Fals
 def _as_calibrate(log: Log, settings: Settings) -> bool:
     """Whether `calibrate` learns this log with these settings as they are."""
     return settings.estimator == AVERAGE and for_the_ground_of(log, settings) == settings
+
+
+@dataclass(frozen=True)
+class Stream:
+    """One stream over all runs of a log; what is not known is NaN."""
+
+    name: str  # "commands", "wheels" or "poses"
+    runs: int  # that have it
+    samples: int
+    seconds: float  # s, from first to last sample, added up over the runs
+    rate: float  # [Hz] one over the median interval
+    gaps: int  # intervals after which inputs are unknown or a pose is late
+    longest_gap: float  # s, the longest interval
+    frames: int  # that poses are comparable in; 0 for inputs
+
+
+def streams_of(log: Log, rules: WindowRules) -> tuple[Stream, ...]:
+    """Return the streams that a log has, commands first."""
+    found = []
+    for name in ("commands", "wheels", "poses"):
+        stamps: list[Floats] = []
+        frames = 0
+        for run in log.runs:
+            series = {"commands": run.commands, "wheels": run.wheels, "poses": run.poses}[name]
+            if series is not None and len(series):
+                stamps.append(series.t)
+                frames += len(np.unique(run.poses.frame)) if name == "poses" else 0
+        if stamps:
+            found.append(_stream(name, stamps, frames, rules))
+    return tuple(found)
+
+
+def _stream(name: str, stamps: Sequence[Floats], frames: int, rules: WindowRules) -> Stream:
+    intervals = np.concatenate([np.diff(t) for t in stamps])
+    usual = float(np.median(intervals)) if len(intervals) else float("nan")
+    allowed = rules.late_factor * usual if name == "poses" else rules.unknown_after
+    return Stream(
+        name=name,
+        runs=len(stamps),
+        samples=sum(len(t) for t in stamps),
+        seconds=float(sum(t[-1] - t[0] for t in stamps)),
+        rate=1.0 / usual if usual > 0.0 else float("nan"),
+        gaps=int(np.count_nonzero(intervals > allowed)) if len(intervals) else 0,
+        longest_gap=float(intervals.max()) if len(intervals) else float("nan"),
+        frames=frames,
+    )
+
+
+@dataclass(frozen=True)
+class Timing:
+    """A time between inputs and poses."""
+
+    input: str  # "command" or "wheel"
+    name: str
+    seconds: float  # s
+    std: float  # s
+    identifiable: bool
+    meaning: str
+
+
+_MEANINGS = {
+    "clock_offset": "poses come this much later than wheel speeds, by their stamps or a body that lags",
+    "delay_v": "from a speed command to the speed, with no lag",
+    "delay_omega": "from a yaw rate command to the yaw rate, with no lag",
+    "log_delay_v": "from a speed command to the first effect",
+    "log_delay_omega": "from a yaw rate command to the first effect",
+    "log_time_constant_v": "then the speed follows with this time constant",
+    "log_time_constant_omega": "then the yaw rate follows with this time constant",
+    "log_slow_time_constant_v": "a part of the speed follows with this time constant",
+    "log_slow_time_constant_omega": "a part of the yaw rate follows with this time constant",
+}
+
+
+def timing_of(learned: Learnability) -> tuple[Timing, ...]:
+    """Return the times that were learned, in s; none where nothing could be learned.
+
+    Where commands were learned by way of the wheel speeds, the clock offset is that of the wheel speeds, and
+    said there.
+    """
+    apart = learned.input == "command" and learned.parameter("clock_offset") is not None
+    found = [(learned.parameter(name), meaning) for name, meaning in _MEANINGS.items()]
+    known = [
+        (p, meaning) for p, meaning in found if p is not None and not (apart and p.name == "clock_offset")
+    ]
+    included = "" if apart else ", clock offset included"
+    return tuple(
+        _timing(learned.input, p, meaning + (included if "delay" in p.name else "")) for p, meaning in known
+    )
+
+
+def _timing(input_name: str, parameter: LearnableParameter, meaning: str) -> Timing:
+    name = parameter.name.removeprefix("log_")
+    seconds, std = parameter.value, parameter.std
+    if name != parameter.name:
+        seconds, std = math.exp(seconds), math.exp(seconds) * std
+    return Timing(input_name, name, seconds, std, parameter.identifiable, meaning)

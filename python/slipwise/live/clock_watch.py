@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Notices that the clock was set: one odd stamp is a fault, several that agree are a new time."""
+"""Looks at stamps as they come: whether the clock was set, and whether they are in seconds."""
 
 from __future__ import annotations
 
 import math
+from collections import deque
+
+import numpy as np
 
 from slipwise.live.samples import Stamped
 from slipwise.logs.clock_steps import AGREE, BACK, ENOUGH
+from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.readings import FEWEST_STEPS, SLOWEST, NotInSeconds
 
 AHEAD = 60.0  # s ahead of it, after which one stamp alone is held back
+_LOOKED_AT = 200  # newest steps
 
 
 class ClockWatch:
-    """Holds suspicious samples back until others agree with them, or do not."""
+    """Holds suspicious samples back: one odd stamp is a fault, several that agree are a new time."""
 
     def __init__(self) -> None:
         self.newest = -math.inf
@@ -69,3 +75,33 @@ class ClockWatch:
         self._ahead = None
         self.newest = max(first.t, sample.t)
         return [first, sample]
+
+
+class PoseSteps:
+    """Keeps how far the newest poses are apart: stamps not in seconds are found as in a whole log."""
+
+    def __init__(self) -> None:
+        self._last = math.nan
+        self._steps: deque[float] = deque(maxlen=_LOOKED_AT)
+
+    def take(self, t: float) -> None:
+        """Take the stamp of a pose [s]; one that is not later than the last says nothing."""
+        if t > self._last:
+            self._steps.append(t - self._last)
+        if not t <= self._last:
+            self._last = t
+
+    def restart(self) -> None:
+        """Another recording begins, or the clock was set."""
+        self._last = math.nan
+
+    @property
+    def enough(self) -> bool:
+        """Whether there are enough of them to say it."""
+        return len(self._steps) >= FEWEST_STEPS
+
+    def found(self) -> Finding | None:
+        """Say it where no robot is measured so rarely."""
+        if max(self._steps, default=0.0) <= SLOWEST:  # as nearly always: no median is above
+            return None
+        return NotInSeconds.by(np.array(self._steps))

@@ -9,11 +9,10 @@ from dataclasses import replace
 from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.sloping_ground import takes_ground_for_level
-from slipwise.live.clock_watch import ClockWatch
+from slipwise.live.clock_watch import ClockWatch, PoseSteps
 from slipwise.live.command_stops import SAID_EVERY, CommandEnds, LiveCommandStops
 from slipwise.live.gates import Gates
 from slipwise.live.move_adviser import Turning
-from slipwise.live.pose_steps import PoseSteps
 from slipwise.live.recent_log import RecentLog
 from slipwise.live.said import Said
 from slipwise.live.samples import (

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The report: one self-contained HTML page about a log, the model learned from it and its scores."""
 
-from slipwise.reporting.contents import Contents
+from slipwise.reporting.contents import Contents, Section
 from slipwise.reporting.figure import Figure
 from slipwise.reporting.report import SECTIONS, write_report
-from slipwise.reporting.section import Section
 
 __all__ = ["SECTIONS", "Contents", "Figure", "Section", "write_report"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from slipwise.calibration.result import Calibration
 from slipwise.evaluation.result import Evaluation, Predictions, Score
@@ -77,3 +77,18 @@ class Contents:
         """Return the inputs of a run that were evaluated: commands, or the twist from the wheels."""
         inputs = run.wheels if self.evaluation.input == "wheel" else run.commands
         return inputs if inputs is not None and len(inputs) else None
+
+
+class Section(Protocol):
+    """One heading of the report with what stands below it.
+
+    A section shows nothing it does not have: where data are missing, its html is a sentence that says so
+    (`markup.missing`). Text that came from a user goes through `markup.escape`; pictures are a `Figure`.
+    """
+
+    title: str  # says what one sees
+    explanation: str  # one plain sentence, below the title
+
+    def html(self, contents: Contents) -> str:
+        """Return the HTML below title and explanation."""
+        ...

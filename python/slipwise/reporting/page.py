@@ -10,10 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import resources
 
-from slipwise.reporting.contents import Contents
+from slipwise.reporting.contents import Contents, Section
 from slipwise.reporting.dark_colours import dark_style
 from slipwise.reporting.markup import escape
-from slipwise.reporting.section import Section
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,8 @@ from slipwise.calibration.result import Calibration
 from slipwise.evaluation.result import Evaluation
 from slipwise.files import write_text_whole
 from slipwise.logs.log import Log
-from slipwise.reporting.contents import Contents
+from slipwise.reporting.contents import Contents, Section
 from slipwise.reporting.page import page
-from slipwise.reporting.section import Section
 from slipwise.reporting.sections.convergence import ConvergenceSection
 from slipwise.reporting.sections.errors import ErrorsSection
 from slipwise.reporting.sections.ground import GroundSection

@@ -2,8 +2,7 @@
 """Names the surface under a robot by what its IMU and its motor currents feel, or says that it is unknown."""
 
 from slipwise.terrain.classifier import UNKNOWN, Answer, TerrainClassifier
-from slipwise.terrain.label_file import read_labels
-from slipwise.terrain.labels import write_labels
+from slipwise.terrain.label_file import read_labels, write_labels
 from slipwise.terrain.recordings import Recording, Stream, read_recordings
 from slipwise.terrain.scores import Score, score_of
 from slipwise.terrain.terrain_file import load_classifier, save_classifier

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads labels of the surface from a terrain classifier or another source: windows by run and time."""
+"""Reads and writes labels of the surface, as a terrain classifier says them: windows by run and time."""
 
 from __future__ import annotations
 
+import csv
+import io
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +15,12 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import LogError
+from slipwise.files import write_text_whole
 from slipwise.logs.left_out import Tally
 from slipwise.logs.open_log import readable
 from slipwise.logs.table import Table, read_table
-from slipwise.terrain.classifier import UNKNOWN
+from slipwise.terrain.classifier import UNKNOWN, Answer
+from slipwise.terrain.windows import Windows
 
 Floats = NDArray[np.float64]
 
@@ -108,3 +113,32 @@ def _certain(table: Table) -> list[tuple[int, _core.TerrainAnswer]]:
             even = np.full(len(classes), 1.0 / len(classes))
             made.append((row, _core.TerrainAnswer(classes, even if unknown else odds, float(unknown))))
     return made
+
+
+def write_labels(path: Path, windows: Windows, answer: Answer, labels: NDArray[np.object_]) -> Path:
+    """Write `run,t_start,t_end,label,p_<surface>...,p_unknown`, a row for each window that has a label.
+
+    The probabilities of the surfaces add up to 1: they are those if the surface is one that was trained.
+
+    Args:
+        path: the CSV file.
+        windows: the windows, [N].
+        answer: what the classifier says about them.
+        labels: the surface, or "unknown", of each, [N]; empty where no sensor said anything.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(
+        ["run", "t_start", "t_end", "label", *(f"p_{name}" for name in answer.surfaces), "p_unknown"]
+    )
+    for k in np.flatnonzero(labels != ""):
+        odds = [*answer.probability[k].tolist(), float(answer.unknown[k])]
+        numbers = ["" if math.isnan(value) else f"{value:.4f}" for value in odds]
+        rows.writerow(
+            [windows.run[k], f"{windows.start[k]:.3f}", f"{windows.end[k]:.3f}", labels[k], *numbers]
+        )
+    write_text_whole(path, text.getvalue())
+    return path

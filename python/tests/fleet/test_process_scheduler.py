@@ -9,7 +9,7 @@ import pytest
 from fleet.work_samples import DIES, DIES_ONCE, FAILS, sample_task, sample_work
 
 from slipwise.fleet import ProcessScheduler
-from slipwise.fleet.scheduler import DIED
+from slipwise.fleet.process_scheduler import DIED
 
 pytestmark = pytest.mark.slow
 

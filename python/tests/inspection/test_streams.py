@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from sample_logs import held, steady_run, with_poses
 
-from slipwise.inspection.streams import streams_of
+from slipwise.inspection.inspect_log import streams_of
 from slipwise.logs import Log, empty_poses
 from slipwise.segments import WindowRules
 

@@ -10,7 +10,7 @@ from scripted_node import SLIP, Scripted, driven
 
 from slipwise.calibration import make_settings
 from slipwise.live.build import build_node
-from slipwise.live.pose_steps import PoseSteps
+from slipwise.live.clock_watch import PoseSteps
 from slipwise.logs.findings.readings import FEWEST_STEPS
 
 

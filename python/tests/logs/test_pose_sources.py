@@ -13,8 +13,7 @@ from slipwise.errors import LogError, SettingsError
 from slipwise.logs import LogOptions, Run, open_log, save_log
 from slipwise.logs.fixes import CODES
 from slipwise.logs.gyro import gyro_alone
-from slipwise.segments import source_names, sourced_rows
-from slipwise.segments.sources import pose_rows
+from slipwise.segments import pose_rows, source_names, sourced_rows
 
 FIX, IMU = "sensor_msgs/msg/NavSatFix", "sensor_msgs/msg/Imu"
 

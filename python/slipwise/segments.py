@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,9 +14,8 @@ from slipwise import _core
 from slipwise.logs.gyro import COLUMN as GYRO
 from slipwise.logs.gyro import gyro_alone, gyro_rows
 from slipwise.logs.held import UNKNOWN_AFTER
-from slipwise.logs.log import Inputs, LeftOut, Run
+from slipwise.logs.log import Inputs, LeftOut, Poses, Run
 from slipwise.logs.readings import READINGS, number_rows
-from slipwise.segments.sources import pose_rows, sourced_rows
 
 Floats = NDArray[np.float64]
 
@@ -188,3 +187,49 @@ def rejections(
             where = runs[index].place(each.t)
             first[each.reason] = LeftOut(each.reason_text, counts[each.reason], where, each.reason)
     return tuple(first[kind] for kind in sorted(first))
+
+
+def source_names(runs: Iterable[Run]) -> tuple[str, ...]:
+    """Return the names of the sources of poses; the first is that of the poses which predictions start from.
+
+    An empty tuple if there is one source whose errors are all of one sort, as in most logs.
+    """
+    names: dict[str, None] = {}
+    fixes: set[float] = set()
+    first = ""
+    for run in runs:
+        first = first or run.source
+        names |= dict.fromkeys(run.others)
+        fixes |= set(_fixes(run.poses).tolist())
+    return (first, *names) if names or len(fixes) > 1 else ()
+
+
+def sourced_rows(run: Run, poses: Floats, sources: Sequence[str]) -> Floats:
+    """Return rows of (t, x, y, yaw, frame, std_xy, std_yaw, source, fix) in the order of their stamps.
+
+    Args:
+        run: what was measured.
+        poses: rows of the first source, as `recording_rows` returns them.
+        sources: all names, the first source's first.
+    """
+    parts = [np.column_stack((poses, np.zeros(len(poses)), _fixes(run.poses.as_measured)))]
+    for number, name in enumerate(sources[1:], start=1):
+        if name in run.others:
+            other = run.others[name]
+            number_of_each = np.full(len(other), float(number))
+            parts.append(np.column_stack((pose_rows(other), number_of_each, _fixes(other))))
+    rows = np.concatenate(parts)
+    return rows[np.argsort(rows[:, 0], kind="stable")]
+
+
+def pose_rows(poses: Poses) -> Floats:
+    """Return poses as rows, see `recording_rows`."""
+    deviations = [
+        np.zeros(len(poses)) if std is None else np.nan_to_num(std, nan=0.0)
+        for std in (poses.std_xy, poses.std_yaw)
+    ]
+    return np.column_stack((poses.rows(), *deviations))
+
+
+def _fixes(poses: Poses) -> Floats:
+    return np.zeros(len(poses)) if poses.fix is None else np.nan_to_num(poses.fix)
