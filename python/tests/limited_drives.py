@@ -32,9 +32,11 @@ def wheels_behind(limits: _core.CommandLimits, commands: Inputs, seed: int) -> I
     return Inputs(t=commands.t, v=v, vy=np.zeros_like(v), omega=omega)
 
 
-def search(limits: _core.CommandLimits, commands: Inputs, seed: int) -> _core.LimitSearch:
+def search(
+    limits: _core.CommandLimits, commands: Inputs, seed: int, separation: float = 1.0
+) -> _core.LimitSearch:
     """Look for the limits of such a drive."""
     wheels = wheels_behind(limits, commands, seed)
     rows = np.column_stack((wheels.t, wheels.v, wheels.omega))
     record = _core.WheelRecord(track_of(commands), np.ascontiguousarray(rows))
-    return _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN, None)
+    return _core.find_limits([record], _core.PriorSettings(), separation, _core.LEAST_LIMIT_GAIN, None)

@@ -148,6 +148,23 @@ def inputs_until(inputs: Inputs, t: float) -> Inputs:
     return inputs.select(inputs.t <= t)
 
 
+def log_until(log: Log, t: float) -> Log:
+    """Return the log as it would have been recorded until `t` [s]."""
+    runs = []
+    for run in log.runs:
+        poses = run.poses.select(run.poses.t <= t)
+        commands, wheels = (None if x is None else inputs_until(x, t) for x in (run.commands, run.wheels))
+        if len(poses) > 1:
+            runs.append(replace(run, commands=commands, wheels=wheels, poses=poses))
+    return replace(log, runs=tuple(runs))
+
+
+def moved(run: Run, seconds: float) -> Run:
+    """Return the run as it would have been recorded so much later."""
+    series = {"poses": run.poses, "commands": run.commands, "wheels": run.wheels}
+    return replace(run, **{name: replace(s, t=s.t + seconds) for name, s in series.items() if s is not None})
+
+
 def _through_chain(u: Floats, drive: Drive) -> tuple[Floats, Floats]:
     """The command after a delay of whole steps and a lag: at each stamp, and its mean until the next."""
     steps = round(drive.delay / STEP)

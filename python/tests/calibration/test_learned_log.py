@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from sample_logs import Drive, inputs_until, simulated_run
+from sample_logs import Drive, log_until, moved, simulated_run
 
 from slipwise import _core
 from slipwise.calibration import Settings
@@ -16,18 +16,12 @@ from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import Keep, learn_log, learn_with, new_learner
 from slipwise.calibration.learner import BASELINE, STRUCTURES
 from slipwise.calibration.prepared_run import collect_windows, prepare_run
-from slipwise.logs import Log, Run
+from slipwise.logs import Log
 
 HORIZONS = (1.0, 2.0, 5.0)
 KEEP = Keep(0.6)
 SLIP = _core.named_basis("edd-2")
 INPUTS = ("wheel", "command")
-
-
-def moved(run: Run, seconds: float) -> Run:
-    """Return the run as it would have been recorded so much later."""
-    series = {"poses": run.poses, "commands": run.commands, "wheels": run.wheels}
-    return replace(run, **{name: replace(s, t=s.t + seconds) for name, s in series.items() if s is not None})
 
 
 @cache
@@ -37,17 +31,6 @@ def log() -> Log:
     first = simulated_run(replace(drive, name="first"))
     second = simulated_run(replace(drive, seed=2, seconds=30.0, name="second"))
     return Log(runs=(first, moved(second, 60.0)))
-
-
-def until(log: Log, t: float) -> Log:
-    """Return the log as it would have been recorded until `t` [s]."""
-    runs = []
-    for run in log.runs:
-        poses = run.poses.select(run.poses.t <= t)
-        commands, wheels = (None if x is None else inputs_until(x, t) for x in (run.commands, run.wheels))
-        if len(poses) > 1:
-            runs.append(replace(run, poses=poses, commands=commands, wheels=wheels))
-    return Log(runs=tuple(runs))
 
 
 def learned(log: Log, input_name: str, settings: Settings | None = None, keep: Keep | None = None) -> Learned:
@@ -122,7 +105,7 @@ def test_predictions_are_of_the_segments_that_are_cut_for_other_methods(input_na
 
 
 def test_the_history_of_a_log_cut_off_is_the_beginning_of_the_history() -> None:
-    part, history = learned(until(log(), 35.0), "wheel", keep=KEEP).history, whole("wheel").history
+    part, history = learned(log_until(log(), 35.0), "wheel", keep=KEEP).history, whole("wheel").history
     assert part is not None
     assert history is not None
     count = len(part.t) - 1

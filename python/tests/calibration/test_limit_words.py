@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
-from limited_drives import FREE, SIDES, TRACK, search, track_of, wheels_behind
+from limited_drives import FREE, SIDES, TRACK, search
 
 from slipwise import _core
 from slipwise.calibration.judge import doubted_limits, limits_advice
@@ -16,10 +16,7 @@ NO_LIMITS = _core.CommandLimits(FREE, FREE, FREE, TRACK, 1.0, 1.0)
 
 def searched(commands: Inputs) -> _core.LimitSearch:
     """Search for limits of a drive that has none."""
-    wheels = wheels_behind(NO_LIMITS, commands, 1)
-    rows = np.column_stack((wheels.t, wheels.v, wheels.omega))
-    record = _core.WheelRecord(track_of(commands), np.ascontiguousarray(rows))
-    return _core.find_limits([record], _core.PriorSettings(), TRACK, _core.LEAST_LIMIT_GAIN, None)
+    return search(NO_LIMITS, commands, 1, TRACK)
 
 
 def with_slowest(speed: float, turn: float) -> Inputs:

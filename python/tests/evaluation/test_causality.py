@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sample_logs import Drive, inputs_until, simulated_log, simulated_run
+from sample_logs import Drive, log_until, moved, simulated_log, simulated_run
 
 from slipwise import _core
 from slipwise.calibration import make_settings
 from slipwise.calibration.predictions import Predictions
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
-from slipwise.logs import Inputs, Log, Poses, Run, open_log
+from slipwise.logs import Inputs, Log, Poses, open_log
 
 METHODS = ("none", "edd-2", "auto", "surface-least-squares", "surface-bayesian")
 OPTIONS = EvaluationOptions(methods=METHODS)
@@ -30,7 +30,7 @@ def simulated() -> Log:
     drive = Drive(seconds=60.0, basis=SLIP, alpha=(-0.1, 0.02, 0.03, 0.05, 0.02, -0.3), lag=0.2, delay=0.15)
     first = simulated_run(replace(drive, late=0.1, name="first"))
     second = simulated_run(replace(drive, seed=2, late=0.1, seconds=40.0, name="second"))
-    return Log(runs=(first, shifted(second, 62.0)))
+    return Log(runs=(first, moved(second, 62.0)))
 
 
 @cache
@@ -44,28 +44,6 @@ def log(request: pytest.FixtureRequest) -> Log:
     if request.param == "simulated":
         return simulated()
     return real(request.getfixturevalue("real_log_dir"))
-
-
-def shifted(run: Run, seconds: float) -> Run:
-    assert run.commands is not None
-    assert run.wheels is not None
-    return replace(
-        run,
-        commands=replace(run.commands, t=run.commands.t + seconds),
-        wheels=replace(run.wheels, t=run.wheels.t + seconds),
-        poses=replace(run.poses, t=run.poses.t + seconds),
-    )
-
-
-def cut_off(log: Log, t: float) -> Log:
-    """Return the log as it would have been recorded until `t` [s]."""
-    runs = []
-    for run in log.runs:
-        poses = run.poses.select(run.poses.t <= t)
-        commands, wheels = (None if x is None else inputs_until(x, t) for x in (run.commands, run.wheels))
-        if len(poses) > 1:
-            runs.append(replace(run, commands=commands, wheels=wheels, poses=poses))
-    return replace(log, runs=tuple(runs))
 
 
 def spoilt_poses(poses: Poses, after: float) -> Poses:
@@ -106,7 +84,7 @@ def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: s
     first, last = whole.predictions[0].t_start[0], whole.predictions[0].t_end[-1]
     for fraction in (0.4, 0.8):
         until = float(first + fraction * (last - first))
-        part = evaluate(cut_off(log, until), input=input_name, options=OPTIONS)
+        part = evaluate(log_until(log, until), input=input_name, options=OPTIONS)
         for key, here in by_name(part).items():
             there = by_name(whole)[key]
             places = {(t, e): i for i, (t, e) in enumerate(zip(there.t_start, there.t_end, strict=True))}
@@ -236,7 +214,7 @@ def test_embargo_holds_across_runs_that_follow_each_other_on_one_clock() -> None
 
 def test_runs_with_clocks_of_their_own_learn_from_all_earlier_runs() -> None:
     log = simulated()
-    own_clock = Log(runs=(log.runs[0], shifted(log.runs[1], -62.0)))
+    own_clock = Log(runs=(log.runs[0], moved(log.runs[1], -62.0)))
     settings = make_settings({"basis": "edd-2"})
     options = EvaluationOptions(methods=("none", "edd-2"), horizons=(2.0,))
     result = evaluate(own_clock, input="wheel", settings=settings, options=options)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from live.sample_outputs import next_moves, odometry_at, straight_path, surface_at, waiting_status
+from live.test_ros_roles import Wire as BareWire
 
 from slipwise.errors import SettingsError
 from slipwise.live.outputs import ModelText, Note
@@ -27,17 +28,13 @@ CHOSEN = Topic("/odom", ODOMETRY, 1)
 LATCHED = {name for name, topic in TOPICS.items() if topic.latched}
 
 
-class Wire:
+class Wire(BareWire):
     """Keeps what is published, and hands over what a test says."""
 
-    name = "a test's"
-
     def __init__(self, *heard: str) -> None:
+        super().__init__({})
         self.heard, self.published = set(heard), list[str]()
         self.takers: dict[str, OnMessage] = {}
-
-    def topics(self) -> list[WireTopic]:
-        return []
 
     def subscribe(self, topic: str, _type_name: str, on_message: OnMessage, *, latched: bool = False) -> None:
         assert not latched
@@ -48,21 +45,8 @@ class Wire:
         assert payload
         self.published.append(topic.removeprefix("/slipwise/"))
 
-    def advertise(self, _topic: str, _type_name: str, *, latched: bool = False) -> None:
-        del latched
-
-    def call(self, _service: str, _type_name: str, _request: bytes, *, timeout: float) -> bytes | None:
-        del timeout
-        return None
-
     def connections(self, topic: str) -> int:
         return int(topic.removeprefix("/slipwise/") in self.heard)
-
-    def notices(self) -> list[str]:
-        return []
-
-    def close(self) -> None:
-        pass
 
 
 def transport_on(
