@@ -17,16 +17,23 @@ def test_a_repeated_stamp_is_a_duplicate() -> None:
     assert not backward.any()
 
 
-def test_stamps_that_go_back_are_left_out_until_they_are_new_again() -> None:
-    keep, _, backward = forward_stamps(np.array([0.0, 1.0, 2.0, 1.2, 1.8, 2.5]))
-    assert keep.tolist() == [True, True, True, False, False, True]
-    assert backward.sum() == 2
-
-
-def test_one_stamp_in_the_far_future_does_not_silence_the_rest() -> None:
-    keep, _, backward = forward_stamps(np.array([0.0, 0.1, 500.0, 0.3, 0.4, 0.5]))
-    assert keep.tolist() == [True, True, False, True, True, True]
-    assert backward.sum() == 1
+@pytest.mark.parametrize(
+    ("stamps", "kept"),
+    [
+        (
+            (0.0, 1.0, 2.0, 1.2, 1.8, 2.5),
+            (True, True, True, False, False, True),
+        ),  # go back until they are new
+        ((0.0, 0.1, 500.0, 0.3, 0.4, 0.5), (True, True, False, True, True, True)),  # one in the far future
+        ((1e9, 0.1, 0.2, 0.3, 0.4, 0.5), (False, True, True, True, True, True)),  # the first one is
+    ],
+)
+def test_stamps_that_do_not_go_on_are_left_out_and_silence_no_others(
+    stamps: tuple[float, ...], kept: tuple[bool, ...]
+) -> None:
+    keep, _, backward = forward_stamps(np.array(stamps))
+    assert keep.tolist() == list(kept)
+    assert backward.sum() == kept.count(False)
 
 
 @given(
@@ -36,12 +43,6 @@ def test_what_is_kept_increases_and_every_sample_is_accounted_for(t: np.ndarray)
     keep, duplicate, backward = forward_stamps(t)
     assert (np.diff(t[keep]) > 0).all()
     assert (keep.astype(int) + duplicate + backward == 1).all()
-
-
-def test_a_first_stamp_in_the_far_future_does_not_silence_the_rest() -> None:
-    keep, _, backward = forward_stamps(np.array([1e9, 0.1, 0.2, 0.3, 0.4, 0.5]))
-    assert keep.tolist() == [False, True, True, True, True, True]
-    assert backward.sum() == 1
 
 
 @pytest.mark.parametrize(
