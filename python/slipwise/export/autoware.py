@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from slipwise.errors import ModelError
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.options import ExportOptions
 from slipwise.export.parameter_file import Entry, Kept, ParameterFile, stated
-from slipwise.models.body_gains import body_twists, straight_line
+from slipwise.models.body_gains import body_twists
 from slipwise.models.model import Model
 
 _SPEED, _STEERING = ("speed_scale_factor",), ("steering_offset",)
@@ -32,9 +30,8 @@ def autoware(model: Model, options: ExportOptions) -> ParameterFile:
             advice="calibrate with `--input wheel`",
         )
     body, numbers = body_twists(model), LearnedNumbers(model.body)
-    g, g_by = straight_line(body.v[:, None], body.mean[:, 0], body.features[:, 0])
-    inputs = np.column_stack((body.w, body.v))
-    h, h_by = straight_line(inputs, body.mean[:, 2], body.features[:, 2])
+    g, g_by = body.line(0, body.v)
+    h, h_by = body.line(2, body.w, body.v)
     speed = numbers.of_parameters(float(g[0]), g_by[0])
     veer = numbers.of_parameters(float(h[1]), h_by[1])
     if not speed.value > 0.0:

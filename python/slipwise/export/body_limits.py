@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
-from slipwise.models.body_gains import BodyTwists, straight_line
+from slipwise.models.body_gains import BodyTwists
 from slipwise.models.limits import LearnedLimit, LimitsSection
 
 Gains = tuple[LearnedNumber, LearnedNumber]  # of the body over the input, speed and yaw rate
@@ -27,8 +27,8 @@ class BodyLimits:
 
 def slip_gains(numbers: LearnedNumbers, twists: BodyTwists) -> Gains:
     """Return body speed per speed and body yaw rate per yaw rate, by least squares."""
-    speed, by_speed = straight_line(twists.v[:, None], twists.mean[:, 0], twists.features[:, 0])
-    yaw, by_yaw = straight_line(twists.w[:, None], twists.mean[:, 2], twists.features[:, 2])
+    speed, by_speed = twists.line(0, twists.v)
+    yaw, by_yaw = twists.line(2, twists.w)
     return (
         numbers.of_parameters(float(speed[0]), by_speed[0]),
         numbers.of_parameters(float(yaw[0]), by_yaw[0]),

@@ -10,7 +10,7 @@ import numpy as np
 from slipwise.errors import ModelError
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.options import ExportOptions
-from slipwise.models.body_gains import body_twists, straight_line
+from slipwise.models.body_gains import body_twists
 from slipwise.models.model import Model
 
 
@@ -38,9 +38,9 @@ def wheel_multipliers(model: Model, options: ExportOptions) -> WheelMultipliers:
     """
     body = body_twists(model)
     v, w = body.v, body.w
-    g, g_by_parameter = straight_line(v[:, None], body.mean[:, 0], body.features[:, 0])
-    inputs = np.column_stack((w, v)) if options.wheel_separation is not None else w[:, None]
-    h, h_by_parameter = straight_line(inputs, body.mean[:, 2], body.features[:, 2])
+    g, g_by_parameter = body.line(0, v)
+    inputs = (w,) if options.wheel_separation is None else (w, v)
+    h, h_by_parameter = body.line(2, *inputs)
     if not (g[0] > 0.0 and h[0] > 0.0):
         raise ModelError(
             f"wheels that drive forward move the robot by a factor of {g[0]:.3g}, and turn it by {h[0]:.3g}",
@@ -56,7 +56,7 @@ def wheel_multipliers(model: Model, options: ExportOptions) -> WheelMultipliers:
     for veer in veers:  # with a separation
         assert options.wheel_separation is not None
         half = veer * ratio * (options.wheel_separation * options.logged_separation_multiplier / 2.0)
-    left = np.column_stack((v * g[0], np.zeros_like(v), inputs @ h))
+    left = np.column_stack((v * g[0], np.zeros_like(v), np.column_stack(inputs) @ h))
     radius = options.logged_radius_multiplier
     forward, sideways, yaw = np.sqrt(np.mean(np.square(body.mean - left), axis=0)).tolist()
     return WheelMultipliers(

@@ -26,6 +26,14 @@ class BodyTwists:
     mean: Floats  # [N, 3]
     features: Floats  # [N, 3, slip parameters], derivative of `mean`
 
+    def line(self, axis: int, *inputs: Floats) -> tuple[Floats, Floats]:
+        """Return the least-squares coefficients [K] of K inputs [N] for an axis of `mean`, by number.
+
+        Beside them their derivative [K, slip parameters]. An input that is always zero gets none: 0.
+        """
+        solve = np.linalg.pinv(np.column_stack(inputs))
+        return solve @ self.mean[:, axis], solve @ self.features[:, axis]
+
 
 def body_twists(model: Model) -> BodyTwists:
     """Return the body's twists on a grid over the range of validity."""
@@ -49,16 +57,6 @@ def turning_twists(model: Model, radius: float) -> BodyTwists:
     fastest = min(max(map(abs, span.speed)), radius * max(map(abs, span.yaw_rate)))
     v = np.repeat(np.linspace(fastest / _GRID, fastest, _GRID), 2)
     return _twists(model, v, v / radius * np.tile((1.0, -1.0), _GRID))
-
-
-def straight_line(inputs: Floats, output: Floats, features: Floats) -> tuple[Floats, Floats]:
-    """Return the least-squares coefficients [K] of inputs [N, K] for an output [N], and their derivative.
-
-    `features` [N, parameters] is the derivative of the output; that of the coefficients is [K, parameters].
-    An input that is always zero gets the coefficient 0.
-    """
-    solve = np.linalg.pinv(inputs)
-    return solve @ output, solve @ features
 
 
 def _twists(model: Model, v: Floats, w: Floats, vy: Floats | None = None) -> BodyTwists:

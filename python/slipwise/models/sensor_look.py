@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from slipwise.models.body_gains import BodyTwists, body_twists, straight_line
+from slipwise.models.body_gains import BodyTwists, body_twists
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION
 from slipwise.number_text import estimate_text, estimate_texts
@@ -43,8 +43,8 @@ def sensor_look(model: Model) -> SensorLook:
     of both. Nothing is known where speeds and turns came together, as on a circle.
     """
     body = body_twists(model)
-    yaw_gain = straight_line(body.w[:, None], body.mean[:, 2], body.features[:, 2])[0][0]
-    ahead, left = (_along(body, axis) for axis in (0, 1))  # [v, w]
+    yaw_gain = body.line(2, body.w)[0][0]
+    ahead, left = (body.line(axis, body.v, body.w) for axis in (0, 1))  # [v, w]
     if not (yaw_gain > 0.0 and ahead[0][0] > 0.0 and _told_apart(body)):
         return SensorLook((math.nan,) * 3, (math.nan,) * 3)
     bent = [_bent(body, axis, line[0]) for axis, line in ((0, ahead), (1, left))]  # m/s
@@ -123,10 +123,6 @@ def _setting(model: Model, look: SensorLook, axis: int) -> str:
     name = ("x", "y", "yaw")[axis]
     given = float(settings.get(name, 0.0)) if isinstance(settings, dict) else 0.0
     return f"--set sensor_extrinsics.{name}={given + look.pose[axis]:.2f}"
-
-
-def _along(body: BodyTwists, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    return straight_line(np.column_stack((body.v, body.w)), body.mean[:, axis], body.features[:, axis])
 
 
 def _told_apart(body: BodyTwists) -> bool:

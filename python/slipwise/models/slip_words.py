@@ -8,7 +8,7 @@ from math import hypot
 
 import numpy as np
 
-from slipwise.models.body_gains import body_twists, sideways_twists, straight_line
+from slipwise.models.body_gains import body_twists, sideways_twists
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, known
 from slipwise.number_text import estimate_text, list_text
@@ -57,8 +57,8 @@ def slip_gains(model: Model) -> SlipGains:
     body = body_twists(model)
     size = model.motion.slip_size
     covariance = model.covariance[:size, :size]
-    speed, by_speed = straight_line(body.v[:, None], body.mean[:, 0], body.features[:, 0])
-    yaw, by_yaw = straight_line(body.w[:, None], body.mean[:, 2], body.features[:, 2])
+    speed, by_speed = body.line(0, body.v)
+    yaw, by_yaw = body.line(2, body.w)
     ratio = speed[0] / yaw[0] if yaw[0] else np.nan
     by_ratio = (by_speed[0] - ratio * by_yaw[0]) / yaw[0] if yaw[0] else by_yaw[0]
 
@@ -68,7 +68,7 @@ def slip_gains(model: Model) -> SlipGains:
     gains = gain(speed[0], by_speed[0]), gain(yaw[0], by_yaw[0])
     if (sides := sideways_twists(model)) is None:
         return SlipGains(gains[0], None, gains[1], gain(ratio, by_ratio))
-    left, by_left = straight_line(sides.vy[:, None], sides.mean[:, 1], sides.features[:, 1])
+    left, by_left = sides.line(1, sides.vy)
     return SlipGains(gains[0], gain(left[0], by_left[0]), gains[1], None)
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from sample_models import make_model, named
 
-from slipwise.models.body_gains import body_twists, straight_line, turning_twists
+from slipwise.models.body_gains import BodyTwists, body_twists, turning_twists
 
 MADE = replace(named("edd-2", lon__V=-0.1, ang__w=-0.4), speed=(-0.5, 1.5), yaw_rate=(-1.0, 1.0))
 
@@ -22,13 +22,14 @@ def test_the_body_does_what_is_left_of_the_drive() -> None:
 
 def test_the_line_through_a_straight_drive_is_its_gain_and_knows_its_derivative() -> None:
     body = body_twists(make_model(MADE))
-    gain, by_parameter = straight_line(body.w[:, None], body.mean[:, 2], body.features[:, 2])
+    gain, by_parameter = body.line(2, body.w)
     np.testing.assert_allclose(gain, [0.6])
     np.testing.assert_allclose(by_parameter, [[0.0, 1.0]], atol=1e-12)
 
 
 def test_an_input_that_is_always_zero_has_no_gain() -> None:
-    gain, by_parameter = straight_line(np.zeros((5, 1)), np.ones(5), np.ones((5, 2)))
+    none = np.zeros(5)
+    gain, by_parameter = BodyTwists(none, none, none, np.ones((5, 3)), np.ones((5, 3, 2))).line(0, none)
     assert not gain.any()
     assert not by_parameter.any()
 
