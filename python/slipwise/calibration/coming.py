@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from slipwise.calibration.sloping_ground import drives_sideways, has_attitude, has_known_force
@@ -49,11 +49,5 @@ def coming_of_runs(runs: Sequence[Run]) -> Coming:
 
 def coming_of(log: Log) -> Coming:
     """Return what comes where a log is replayed."""
-    of_runs = coming_of_runs(log.runs)
-    return Coming(
-        positions=of_runs.positions,
-        gyro_alone=of_runs.gyro_alone,
-        sources=of_runs.sources,
-        attitude=has_known_force(log) or has_attitude(log),
-        sideways=drives_sideways(log),
-    )
+    attitude = has_known_force(log) or has_attitude(log)
+    return replace(coming_of_runs(log.runs), attitude=attitude, sideways=drives_sideways(log))

@@ -29,7 +29,7 @@ class BodyTwists:
     def line(self, axis: int, *inputs: Floats) -> tuple[Floats, Floats]:
         """Return the least-squares coefficients [K] of K inputs [N] for an axis of `mean`, by number.
 
-        Beside them their derivative [K, slip parameters]. An input that is always zero gets none: 0.
+        Beside them their derivative [K, slip parameters]. Of an input that is always zero both are 0.
         """
         solve = np.linalg.pinv(np.column_stack(inputs))
         return solve @ self.mean[:, axis], solve @ self.features[:, axis]
