@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -25,8 +25,9 @@ from slipwise.calibration.settings import Settings
 from slipwise.calibration.surface_course import SurfaceCourse, course_of
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
 from slipwise.calibration.surface_sections import begin_with
-from slipwise.calibration.terrain_cues import Labels, check_labels, cues_of
+from slipwise.errors import LogError
 from slipwise.models.model import Model
+from slipwise.terrain.label_file import Window
 
 _WORDS = {
     _core.SurfaceEventKind.Opened: "new",
@@ -35,6 +36,7 @@ _WORDS = {
     _core.SurfaceEventKind.Merged: "merged",
     _core.SurfaceEventKind.Dropped: "dropped",
 }
+Labels = Mapping[str, Sequence[Window]]
 
 
 @dataclass(frozen=True)
@@ -271,3 +273,48 @@ def _alarm(event: _core.LearnerEvent) -> bool:
     """Whether the way to learn that weighs most found a change of terrain."""
     heaviest = max(range(len(event.weights)), key=lambda place: event.weights[place])
     return bool(event.updates[heaviest].change.alarm)
+
+
+def cues_of(labels: Labels, run: PreparedRun) -> tuple[Cue, ...]:
+    """Return what was said while a run was driven, each when it was known: at its window's end."""
+    first, last = run.run.span
+    windows = labels.get(run.run.name, ())
+    return tuple((each.end, each.answer) for each in windows if first <= each.end <= last)
+
+
+def check_labels(labels: Labels, drives: Sequence[Sequence[PreparedRun]]) -> None:
+    """Refuse labels that go with no run, or with several.
+
+    Raises:
+        LogError: no run has labels, the labels of one lie at other times than it was driven, or two logs
+            have a run of one name at the same times.
+    """
+    runs = [run.run for drive in drives for run in drive]
+    named = [run for run in runs if run.name in labels]
+    if not named:
+        raise LogError(
+            f"the labels are of runs {_some(sorted(labels))}, the logs have {_some([r.name for r in runs])}",
+            where="--surface",
+            advice="name the runs alike in both, in the column `run`",
+        )
+    for place, run in enumerate(named):
+        windows, (first, last) = labels[run.name], run.span
+        if not any(first <= window.end <= last for window in windows):
+            raise LogError(
+                f"run {run.name} was driven from {first:.1f} to {last:.1f} s and its labels are from "
+                f"{windows[0].start:.1f} to {windows[-1].end:.1f} s",
+                where="--surface",
+                advice="stamp both by one clock",
+            )
+        for other in named[:place]:
+            if other.name == run.name and other.span[0] <= last and first <= other.span[1]:
+                raise LogError(
+                    f"two logs have a run {run.name} at the same times, and labels of one",
+                    where="--surface",
+                    advice="name the runs differently in the column `run`",
+                )
+
+
+def _some(names: Sequence[str]) -> str:
+    shown = ", ".join(names[:3])
+    return f"{shown} and {len(names) - 3} more" if len(names) > 3 else shown

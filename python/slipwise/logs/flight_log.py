@@ -43,14 +43,14 @@ def read_flight_messages(path: Path, kind: str) -> FlightMessages:
         LogError: the log is damaged, or the library that reads it is not installed.
     """
     if kind == ULOG:
-        from slipwise.logs.ulog_file import read_ulog
+        from slipwise.logs.px4 import read_ulog
 
         return read_ulog(path)
     if kind == DATAFLASH:
-        from slipwise.logs.mavlink_file import read_dataflash
+        from slipwise.logs.ardupilot import read_dataflash
 
         return read_dataflash(path)
-    from slipwise.logs.mavlink_file import read_tlog
+    from slipwise.logs.ardupilot import read_tlog
 
     return read_tlog(path)
 

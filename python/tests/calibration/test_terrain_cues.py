@@ -8,11 +8,10 @@ import pytest
 from sample_surfaces import FIRM, LOOSE, floor_log
 
 from slipwise import _core
-from slipwise.calibration.learned_sequence import SequenceOptions, learn_sequence
+from slipwise.calibration.learned_sequence import SequenceOptions, check_labels, cues_of, learn_sequence
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.prepared_run import PreparedRun, prepare_run
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.terrain_cues import check_labels, cues_of
 from slipwise.errors import LogError, SettingsError
 from slipwise.terrain.label_file import Window
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from dynamics.sample_systems import CART
 
-from slipwise.dynamics.recorded import recorded
+from slipwise.dynamics.learn_dynamics import recorded
 from slipwise.errors import LogError
 
 

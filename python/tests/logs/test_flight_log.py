@@ -26,8 +26,8 @@ from slipwise.errors import LogError, SettingsError
 from slipwise.extras import to_install
 from slipwise.logs import LogOptions, open_log
 from slipwise.logs.flight_log import flight_format
+from slipwise.logs.px4 import MOST_RETURNS, _Forward
 from slipwise.logs.survey import survey_log
-from slipwise.logs.ulog_file import MOST_RETURNS, _Forward
 
 pytest.importorskip("pymavlink")
 pytest.importorskip("pyulog")

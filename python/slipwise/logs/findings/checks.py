@@ -16,8 +16,7 @@ from slipwise.logs.findings.course_heading import CourseHeading
 from slipwise.logs.findings.drifting_poses import DriftingPoses
 from slipwise.logs.findings.encoders import ReversalJumps, WheelSpikes
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.findings.gyro_scale import GyroScale
-from slipwise.logs.findings.gyro_turns import GyroTurnsOtherwise
+from slipwise.logs.findings.gyro_scale import GyroScale, GyroTurnsOtherwise
 from slipwise.logs.findings.headings import (
     BackwardPoses,
     ConstantHeading,

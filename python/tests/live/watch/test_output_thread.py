@@ -6,7 +6,7 @@ from __future__ import annotations
 import threading
 
 from slipwise.live.outputs import Note, Output
-from slipwise.live.watch.output_thread import OutputThread
+from slipwise.live.watch.terminal import OutputThread
 
 
 def test_outputs_are_handled_in_their_order_before_it_closes() -> None:

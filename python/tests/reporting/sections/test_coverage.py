@@ -10,7 +10,7 @@ from reporting.page_parts import contents_of, figures_of
 from reporting.synthetic_results import Results, make_results
 
 from slipwise.logs.log import Inputs, Log
-from slipwise.reporting.sections.coverage import coverage_figure
+from slipwise.reporting.sections.surfaces import coverage_figure
 
 
 def _html(results: Results) -> str:
