@@ -10,6 +10,7 @@ import numpy as np
 
 from slipwise.calibration.estimator_run import estimator_info
 from slipwise.calibration.gyro_clock import gyro_clock
+from slipwise.calibration.inputs_seen import WheelStep
 from slipwise.calibration.judge import Judged, Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement, too_short
 from slipwise.calibration.learned import Learned
@@ -37,7 +38,6 @@ from slipwise.calibration.shortage import shortage_advice, silence, unused_measu
 from slipwise.calibration.sloping_ground import for_positions, for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import LogFacts
-from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.logs.findings.checks import findings_in, findings_of_log
 from slipwise.logs.findings.finding import Finding

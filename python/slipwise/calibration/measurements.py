@@ -5,9 +5,8 @@ from __future__ import annotations
 
 from slipwise import _core
 from slipwise.calibration.core_settings import car_of
+from slipwise.calibration.inputs_seen import SidewaysSeen, WheelStep
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.sideways_seen import SidewaysSeen
-from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import SettingsError
 from slipwise.logs.attitude import mounting_words
 from slipwise.logs.fixes import fix_number

@@ -13,6 +13,7 @@ from slipwise.argument_types import check_arguments
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
 from slipwise.calibration.coming import Coming
 from slipwise.calibration.core_settings import NOTHING_PARTICULAR, car_of, core_settings, wheelbase_of
+from slipwise.calibration.inputs_seen import SidewaysSeen, WheelStep
 from slipwise.calibration.judge import Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned import Learned
@@ -23,12 +24,10 @@ from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.path_ahead import PathAhead
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
-from slipwise.calibration.sideways_seen import SidewaysSeen
 from slipwise.calibration.sloping_ground import for_ground, for_positions
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts
-from slipwise.calibration.wheel_step import WheelStep
 from slipwise.errors import SettingsError
 from slipwise.logs.findings.checks import findings_in, findings_of_log, not_shown_yet
 from slipwise.logs.findings.finding import Finding

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from sample_field import field_drive, field_path, learned, noisy
 
-from slipwise.calibration.wheel_step import WheelStep
+from slipwise.calibration.inputs_seen import WheelStep
 from slipwise.models.summary import summarise
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How far apart wheel speeds come: an offset of clocks within that is how they are held."""
+"""What inputs show one sample at a time: how far apart wheel speeds come, and whether they drive sideways."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.logs.held import UNKNOWN_AFTER
+from slipwise.models.axes import driven_span
 
 
 class WheelStep:
-    """The mean time between wheel speeds, gaps left out.
+    """The mean time between wheel speeds, gaps left out: a clock offset within that is how they are held.
 
     Args:
         total: of all steps so far [s].
@@ -47,3 +48,28 @@ class WheelStep:
     def seconds(self) -> float:
         """The mean [s], 0 where there is none."""
         return round(self.total / self.count, 4) if self.count else 0.0
+
+
+class SidewaysSeen:
+    """The range of sideways speeds so far, and the largest speed.
+
+    Args:
+        most: largest speed so far [m/s].
+        right: least sideways speed, not above 0 [m/s].
+        left: largest sideways speed, not below 0 [m/s].
+    """
+
+    def __init__(self, most: float = 0.0, right: float = 0.0, left: float = 0.0) -> None:
+        self.most, self.right, self.left = most, right, left
+
+    def take(self, v: float, vy: float) -> None:
+        """Take the speeds of an input [m/s]."""
+        speed = math.hypot(v, vy)
+        if math.isfinite(speed):
+            self.most = max(self.most, speed)
+            self.right, self.left = min(self.right, vy), max(self.left, vy)
+
+    @property
+    def span(self) -> list[float] | None:
+        """The range [m/s], as `sideways_span` has it of a log; None: it is no axis of commands."""
+        return driven_span(self.most, self.right, self.left)
