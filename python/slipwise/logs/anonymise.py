@@ -6,15 +6,16 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import LogError
-from slipwise.logs.log import Floats, Inputs, Log, Poses, Run
+from slipwise.logs.log import Floats, Forces, Inputs, Log, Poses, Run
 from slipwise.logs.vocabulary import PREFIXES, measured_by
 
+_Series = TypeVar("_Series", Inputs, Forces)
 LONGEST_GAP = 3600.0  # s between runs; a longer one would tell the hours of work
 _DIGITS = 12  # hexadecimal, of a hashed name
 
@@ -69,12 +70,16 @@ def _shifts(spans: Iterable[tuple[float, float]]) -> list[float]:
 
 
 def _run(run: Run, index: int, shift: float, kept: Collection[str]) -> Run:
-    return Run(
+    return replace(
+        run,
         name=_hashed(run, index),
-        commands=_inputs(run.commands, shift),
-        wheels=_inputs(run.wheels, shift),
+        commands=_later(run.commands, shift),
+        wheels=_later(run.wheels, shift),
         poses=_poses(run.poses, shift),
         extra=_extra(run.extra, shift, kept),
+        others={name: _poses(poses, shift) for name, poses in run.others.items()},
+        files=(),
+        forces=_later(run.forces, shift),
     )
 
 
@@ -86,8 +91,8 @@ def _hashed(run: Run, index: int) -> str:
     return f"run-{digest.hexdigest()[:_DIGITS]}"
 
 
-def _inputs(inputs: Inputs | None, shift: float) -> Inputs | None:
-    return None if inputs is None else replace(inputs, t=inputs.t - shift)
+def _later(series: _Series | None, shift: float) -> _Series | None:
+    return None if series is None else replace(series, t=series.t - shift)
 
 
 def _poses(poses: Poses, shift: float) -> Poses:
@@ -102,16 +107,7 @@ def _poses(poses: Poses, shift: float) -> Poses:
         if z is not None:
             known = z[at][np.isfinite(z[at])]
             z[at] -= known[0] if len(known) else 0.0
-    return Poses(
-        t=poses.t - shift,
-        **columns,
-        frame=frame.astype(np.int64),
-        z=z,
-        roll=poses.roll,
-        pitch=poses.pitch,
-        std_xy=poses.std_xy,
-        std_yaw=poses.std_yaw,
-    )
+    return replace(poses, t=poses.t - shift, **columns, frame=frame.astype(np.int64), z=z)
 
 
 def _from_first(x: Floats, y: Floats, yaw: Floats) -> tuple[Floats, Floats, Floats]:

@@ -11,6 +11,7 @@ from sample_logs import Drive, simulated_run
 
 from slipwise.errors import LogError
 from slipwise.logs import Inputs, Log, Run, anonymised
+from slipwise.logs.log import Forces
 
 EPOCH, EAST, NORTH, HEADING = 1.7e9, 4.5e5, 5.3e6, 2.1
 
@@ -102,6 +103,23 @@ def test_gaps_between_runs_end_at_an_hour_and_another_clock_starts_at_zero(run: 
     log = Log(tuple(far_away(run, start=start) for start in starts))
     spans = [each.span for each in anonymised(log).runs]
     assert [round(start, 3) for start, _ in spans] == [0.0, 100.0, round(spans[1][1] + 3600.0, 3), 0.0]
+
+
+def test_further_sources_forces_fixes_and_positions_stay_what_they_are(run: Run) -> None:
+    far = far_away(run)
+    fixes = np.full(len(far.poses), 4.0)
+    positions = replace(far.poses, fix=fixes, course=True)
+    forces = Forces(far.poses.t, np.ones(len(far.poses)), np.zeros(len(far.poses)))
+    whole = replace(far, poses=positions, others={"gnss": far.poses}, source="lidar", forces=forces)
+    (only,) = anonymised(Log((whole,))).runs
+    assert only.poses.course
+    assert only.poses.fix is fixes
+    assert only.source == "lidar"
+    other = only.others["gnss"]
+    np.testing.assert_allclose([other.x[0], other.y[0], other.yaw[0], other.t[0]], 0.0, atol=1e-9)
+    np.testing.assert_allclose(relative(replace(only, poses=other)), relative(run), atol=1e-8)
+    assert only.forces is not None
+    np.testing.assert_allclose(only.forces.t, only.poses.t)
 
 
 def test_only_speeds_of_the_vehicle_are_carried_along(run: Run) -> None:
