@@ -24,7 +24,7 @@ LONGEST = (
     *("test_interruption", "test_force_recovery", "test_code_in_pages", "test_live", "test_same_verdict"),
     *("test_findings", "test_trailer_recovery", "test_hillside", "test_chapter6", "test_bag_faults"),
     *("test_hour_of_day", "test_disturbed_model", "test_checks", "test_closed_loop", "test_matrix"),
-    *("test_sloping_ground", "test_ros_package", "test_figures", "test_verdict", "test_positions"),
+    *("test_settings_for_log", "test_ros_package", "test_figures", "test_verdict", "test_positions"),
 )
 
 

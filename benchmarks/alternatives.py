@@ -18,7 +18,7 @@ import slipwise
 from slipwise.calibration import Settings
 from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.prepared_run import prepare_run
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.calibration.statistics import held_out_half
 from slipwise.logs import Log, LogOptions, Poses
 from slipwise.logs.open_log import cut_to_span

@@ -24,7 +24,7 @@ from slipwise.calibration.calibrate import JUDGING_HORIZONS, calibrate_by
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.prepared_run import WindowSet, prepare_run
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.calibration.statistics import held_out_half
 from slipwise.logs import Log, LogOptions, Poses, Run
 from slipwise.logs.log import CarCommands, Forces

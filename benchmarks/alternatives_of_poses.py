@@ -33,7 +33,7 @@ from slipwise.calibration import Settings, calibrate, make_settings
 from slipwise.calibration.from_prior import KnownFleet, calibrate_from
 from slipwise.calibration.learned_log import new_learner
 from slipwise.calibration.prepared_run import prepare_run
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.errors import SlipwiseError
 from slipwise.fleet import write_prior
 from slipwise.logs import Log, Poses, Run

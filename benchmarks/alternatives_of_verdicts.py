@@ -20,7 +20,7 @@ from slipwise.calibration.calibrate import (
 )
 from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.prepared_run import prepare_run
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.errors import SlipwiseError
 from slipwise.logs import Log
 

@@ -34,8 +34,8 @@ from slipwise.calibration.prepared_run import (
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.same_log import learned_before
 from slipwise.calibration.settings import AVERAGE, Settings
+from slipwise.calibration.settings_for_log import for_positions, for_the_ground_of
 from slipwise.calibration.shortage import shortage_advice, silence, unused_measurements, unused_wheels
-from slipwise.calibration.sloping_ground import for_positions, for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import LogFacts
 from slipwise.errors import LogError, ModelError, SettingsError

@@ -21,7 +21,7 @@ from slipwise.calibration.prepared_run import PreparedRun, choose_input, prepare
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.same_log import refuse_same_log
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.calibration.surface_sections import with_memory
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.log import Log

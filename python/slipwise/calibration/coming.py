@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from slipwise.calibration.sloping_ground import drives_sideways, has_attitude, has_known_force
+from slipwise.calibration.settings_for_log import drives_sideways, has_attitude, has_known_force
 from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Log, Run, has_course
 from slipwise.segments import source_names

@@ -9,7 +9,7 @@ from slipwise import _core
 from slipwise.calibration.coming import Coming
 from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.sloping_ground import for_positions
+from slipwise.calibration.settings_for_log import for_positions
 from slipwise.calibration.source_tables import core_sources
 from slipwise.errors import SettingsError
 from slipwise.logs import LogOptions

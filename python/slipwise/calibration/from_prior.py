@@ -19,7 +19,7 @@ from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import WindowSet, choose_input, has_wheels
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.settings import AVERAGE, Settings
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.calibration.statistics import held_out_half
 from slipwise.errors import ModelError, SettingsError
 from slipwise.files import sha256_of

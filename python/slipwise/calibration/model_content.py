@@ -14,8 +14,8 @@ from slipwise.calibration.judge import Judged
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.settings_for_log import RESIDUALS
 from slipwise.calibration.shares import PoseSensor, shares_of
-from slipwise.calibration.sloping_ground import RESIDUALS
 from slipwise.models import schema
 from slipwise.models.body_force import force_names
 from slipwise.models.car import car_rows

@@ -24,7 +24,7 @@ from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.path_ahead import PathAhead
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
-from slipwise.calibration.sloping_ground import for_ground, for_positions
+from slipwise.calibration.settings_for_log import for_ground, for_positions
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts

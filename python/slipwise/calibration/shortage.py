@@ -7,7 +7,7 @@ from slipwise.calibration.judgement import FEWEST_WINDOWS
 from slipwise.calibration.learner import BASELINE, DIRECT, JOINT, LIMITS, Posterior
 from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
 from slipwise.calibration.settings import AVERAGE, Settings
-from slipwise.calibration.sloping_ground import has_attitude, has_known_force
+from slipwise.calibration.settings_for_log import has_attitude, has_known_force
 from slipwise.errors import LogError
 from slipwise.logs.findings.command_stops import stops_of
 from slipwise.logs.log import Log

@@ -20,7 +20,7 @@ from slipwise.calibration.prepared_run import (
 )
 from slipwise.calibration.same_log import learned_from
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation.methods import Contest, method_info, method_names, refuse_names_of_methods
 from slipwise.evaluation.result import Evaluation

@@ -14,7 +14,7 @@ from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.predictors import Predictor, predict_all
 from slipwise.calibration.prepared_run import WindowSet, collect_windows
 from slipwise.calibration.settings import AVERAGE, Settings
-from slipwise.calibration.sloping_ground import SIDEWAYS_BASES, SLOPE_BASES
+from slipwise.calibration.settings_for_log import SIDEWAYS_BASES, SLOPE_BASES
 from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.models.model import Model
 from slipwise.segments import car_prior

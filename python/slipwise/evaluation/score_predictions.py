@@ -8,7 +8,7 @@ from pathlib import Path
 
 from slipwise.calibration.prepared_run import choose_input
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.errors import LogError
 from slipwise.evaluation.evaluate import EvaluationOptions, contest_of
 from slipwise.evaluation.methods import method_info

@@ -14,7 +14,7 @@ from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import PreparedRun, choose_input, prepare_run
 from slipwise.calibration.same_log import learned_from, refuse_same_log
 from slipwise.calibration.settings import AVERAGE, Settings
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation.evaluate import EvaluationOptions, Report, evaluate
 from slipwise.evaluation.methods import method_info

@@ -15,7 +15,7 @@ from slipwise.calibration import Settings
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.prepared_run import choose_input
 from slipwise.calibration.settings import AVERAGE
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.errors import LogError
 from slipwise.inspection.coverage_map import coverage_map
 from slipwise.inspection.learnability import Learnability, LearnableParameter, learnability_of

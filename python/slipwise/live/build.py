@@ -12,7 +12,7 @@ from slipwise.calibration import Settings
 from slipwise.calibration.coming import Coming
 from slipwise.calibration.core_settings import car_of, wheelbase_of
 from slipwise.calibration.motion_learner import MotionLearner
-from slipwise.calibration.sloping_ground import for_ground
+from slipwise.calibration.settings_for_log import for_ground
 from slipwise.errors import SettingsError
 from slipwise.live.applied import AppliedModel
 from slipwise.live.cache import Cache, CacheKey

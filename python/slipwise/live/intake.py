@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
-from slipwise.calibration.sloping_ground import takes_ground_for_level
+from slipwise.calibration.settings_for_log import takes_ground_for_level
 from slipwise.live.clock_watch import ClockWatch, PoseSteps
 from slipwise.live.command_stops import SAID_EVERY, CommandEnds, LiveCommandStops
 from slipwise.live.gates import Gates

@@ -11,7 +11,7 @@ from slipwise.calibration.calibrate_sequence import calibrate_sequence, settings
 from slipwise.calibration.learned_sequence import SequenceOptions
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.settings import make_settings
-from slipwise.calibration.sloping_ground import SLOPE_BASES
+from slipwise.calibration.settings_for_log import SLOPE_BASES
 from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.models import Model
 

@@ -15,7 +15,7 @@ from slipwise import _core
 from slipwise.calibration import Settings, calibrate
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.prepared_run import prepare_run
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.logs import Log, LogOptions, open_log
 
 INPUTS = ("wheel", "command")

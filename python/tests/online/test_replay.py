@@ -16,7 +16,7 @@ from slipwise.calibration.calibrate import JUDGING_HORIZONS
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.settings_for_log import for_the_ground_of
 from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.logs import Log, open_log
 from slipwise.models import Model, schema

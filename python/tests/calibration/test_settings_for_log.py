@@ -16,7 +16,7 @@ from slipwise.calibration.coming import Coming
 from slipwise.calibration.learning_tables import AUTO_BASES
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.settings import Settings, make_settings
-from slipwise.calibration.sloping_ground import (
+from slipwise.calibration.settings_for_log import (
     SIDEWAYS_BASES,
     SLOPE_BASES,
     for_the_ground_of,
