@@ -20,7 +20,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python" / "tests"))
 
-from limited_drives import CHANNELS, FREE, SIDES, TRACK, search, true_value
+from limited_drives import CHANNELS, FREE, SIDES, TRACK, search
 
 from slipwise import _core
 from slipwise.calibration.judge import limits_advice
@@ -54,6 +54,20 @@ class Drive:
     seed: int
     found: list[Found]
     advice: tuple[str, ...]
+
+
+def true_value(limits: _core.CommandLimits, found: _core.FoundLimit) -> float:
+    """Return the truth of a limit that was found."""
+    axis = {_core.LimitedAxis.Speed: limits.speed, _core.LimitedAxis.YawRate: limits.yaw_rate}.get(
+        found.axis, limits.side
+    )
+    kinds = _core.LimitKind
+    return {
+        kinds.DeadBand: axis.dead_band,
+        kinds.Saturation: axis.saturation,
+        kinds.SlewRateUp: axis.slew_rate_up,
+        kinds.SlewRateDown: axis.slew_rate_down,
+    }[found.kind]
 
 
 def one(case: str, seed: int) -> Drive:

@@ -87,7 +87,7 @@ def judge(job: Job) -> Found:
         delay=float(late[0] - STEP_AT) if len(late) else None,
         same=_heading(always, 0.0, JUDGED[1]),
         unwatched=_heading(plain, 0.0, JUDGED[1]),
-        segments=always.segments,
+        segments=0 if always.history is None else len(always.history.t),
         alarms=len(before),
     )
 

@@ -10,8 +10,7 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 from neural import FIRST, add_networks, last_known, neural_residual
-from python.tests.evaluation.test_causality import cut_off
-from sample_logs import Drive, simulated_log
+from sample_logs import Drive, log_until, simulated_log
 
 from slipwise import _core
 from slipwise.calibration import make_settings
@@ -68,14 +67,14 @@ def test_networks_learn_slip_and_auto_is_no_worse() -> None:
 @pytest.mark.slow
 def test_what_comes_later_does_not_reach_a_prediction() -> None:
     whole = of(judged(slipping(), ("neural",)), "neural")
-    part = of(judged(cut_off(slipping(), 70.0), ("neural",)), "neural")
+    part = of(judged(log_until(slipping(), 70.0), ("neural",)), "neural")
     assert len(part) > 1.5 * FIRST
     np.testing.assert_allclose(part.pose, whole.pose[: len(part)], atol=1e-9)
     np.testing.assert_allclose(part.covariance, whole.covariance[: len(part)], rtol=1e-6)
 
 
 def test_before_the_first_fit_the_forward_model_is_the_kinematic_baseline() -> None:
-    result = judged(cut_off(slipping(), 25.0), ("neural",))
+    result = judged(log_until(slipping(), 25.0), ("neural",))
     np.testing.assert_array_equal(of(result, "neural").pose, of(result, "none").pose)
 
 

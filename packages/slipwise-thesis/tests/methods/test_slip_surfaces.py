@@ -6,8 +6,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from python.tests.evaluation.test_causality import by_name, cut_off, same
-from sample_logs import Drive, simulated_log
+from python.tests.evaluation.test_causality import by_name, same
+from sample_logs import Drive, log_until, simulated_log
 
 from slipwise import _core
 from slipwise.calibration import make_settings
@@ -80,11 +80,11 @@ def test_slip_rates_of_windows_are_those_of_a_steady_drive() -> None:
 
 def test_the_gaussian_process_predicts_from_the_past_alone() -> None:
     needs_scikit_learn(PROCESS)
-    log = cut_off(slipping(), 90.0)
+    log = log_until(slipping(), 90.0)
     whole = judged(log, (PROCESS,))
     until = float(whole.predictions[0].t_end[68])
     there = by_name(whole)
-    part = by_name(judged(cut_off(log, until), (PROCESS,)))
+    part = by_name(judged(log_until(log, until), (PROCESS,)))
     assert part.keys() == there.keys()
     for key, here in part.items():
         before_cut = len(here) - 1  # the last pose may stand in for a nearer one behind the cut
