@@ -183,7 +183,7 @@ CarBatch<Scalar> car_batch(const CarCurves& car, const RolloutBatch<Scalar>& bat
   if (!(period > 0.0) || batch.commands.vy != nullptr) {
     throw std::invalid_argument("a car's rollouts need throttle and steering, and a positive period");
   }
-  if (!(car.delay >= 0.0 && car.delay <= kLongestDelay)) {
+  if (!(car.delay >= 0.0) || car.delay > kLongestDelay) {
     throw std::invalid_argument("a car's delay must be between 0 and " + std::to_string(kLongestDelay) + " s, got " +
                                 std::to_string(car.delay));
   }

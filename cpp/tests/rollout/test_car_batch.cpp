@@ -142,6 +142,10 @@ TEST_CASE("a car that hears late goes on as it does where nothing is known of wh
   CHECK(found.v[1] == 1.2);
   CHECK(found.omega[1] == 0.5);
   CHECK(found.v[2] < 1.1);
+  for (const double impossible : {-0.1, 1e9, std::nan("")}) {
+    late.delay = impossible;
+    CHECK_THROWS_AS(car_batch(late, batch, kPeriod), std::invalid_argument);
+  }
 }
 
 /// One car by the laws in doubles, step by step.
