@@ -62,7 +62,7 @@ class Drive {
  public:
   Drive(const CarCurves& car, const CarSpan& span) : car_(car), span_(span) {}
 
-  /// Until `to` [s], where it hears its first command: a car that was measured before goes on as it was.
+  /// Until `to` [s], where its first command reaches it: a car that was measured before goes on as it was.
   void keep(double to) {
     if (span_.measured && later(to, span_.measured->t) && later(to, span_.start)) {
       const double from = std::max(span_.measured->t, span_.start);
@@ -177,6 +177,9 @@ Eigen::MatrixXd prior_precision(const std::vector<double>& at, const Eigen::Vect
   return precision;
 }
 
+/// Which of a car's numbers are times: lag, steering lag and delay, where `single` is the first that is of no curve.
+std::array<Eigen::Index, 3> times_of(Eigen::Index single) { return {single, single + 1, single + 4}; }
+
 /// What of the covariance is the prior's: large where the car never drove, and small against what the noise of the
 /// measurements leaves where it did.
 Eigen::MatrixXd unknown_covariance(const CarCurves& car) {
@@ -197,7 +200,7 @@ Eigen::MatrixXd unknown_covariance(const CarCurves& car) {
   };
   put(car.speed, 0, single + 2);
   put(car.curvature, speeds, single + 3);
-  for (const Eigen::Index time : {single, single + 1, single + 4}) {
+  for (const Eigen::Index time : times_of(single)) {
     precision(time, time) = prior[time] > 0.0 ? 1.0 / (prior[time] * prior[time]) : 0.0;
   }
   return covariance * precision * covariance;
@@ -233,7 +236,8 @@ CarDeviations car_deviations(const CarCurves& car, const InputHistory& commands)
   const Eigen::Index speeds = std::ssize(car.speed.value), single = mean.size() - 5;
   const auto [first_speed, last_speed] = knots_between(car.speed, low.v, high.v);
   const auto [first_turn, last_turn] = knots_between(car.curvature, low.omega, high.omega);
-  std::array<std::vector<Eigen::Index>, 3> blocks{{{single + 2}, {single + 3}, {single, single + 1, single + 4}}};
+  const std::array<Eigen::Index, 3> times = times_of(single);
+  std::array<std::vector<Eigen::Index>, 3> blocks{{{single + 2}, {single + 3}, {times.begin(), times.end()}}};
   for (Eigen::Index k = first_speed; k <= last_speed; ++k) {
     blocks[0].push_back(k);
   }
@@ -257,7 +261,7 @@ CarDeviations car_deviations(const CarCurves& car, const InputHistory& commands)
           numbers[block[static_cast<std::size_t>(k)]] +=
               kDeviation * std::sqrt(directions.values[i]) * directions.vectors(k, i);
         }
-        for (const Eigen::Index time : {single, single + 1, single + 4}) {
+        for (const Eigen::Index time : times) {
           numbers[time] = std::max(numbers[time], 0.0);
         }
         set_numbers(found.cars.emplace_back(car), numbers);

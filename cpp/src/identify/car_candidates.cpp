@@ -82,27 +82,6 @@ Eigen::VectorXd widths(const std::array<double, N>& knots) {
   return both;
 }
 
-}  // namespace
-
-Eigen::VectorXd throttle_ramps(double throttle) { return ramps(kCarThrottle, throttle); }
-Eigen::VectorXd steering_ramps(double steering) { return ramps(kCarSteering, steering); }
-
-CurveBank car_speed_bank(double top_speed, double noise) {
-  Eigen::VectorXd mean(kThrottleRamps + 1), std(kThrottleRamps + 1);
-  mean << top_speed * widths(kCarThrottle), kDragPrior[0];
-  std << (top_speed * widths(kCarThrottle)).array() + kUnsteep, kDragPrior[1];
-  return {kCarLags.size() * kCarDelays.size(), mean, std, noise, 0};
-}
-
-CurveBank car_turn_bank(double curvature, double noise) {
-  Eigen::VectorXd mean(kSteeringRamps + 2), std(kSteeringRamps + 2);
-  mean << 0.0, curvature * widths(kCarSteering), kUndersteerPrior[0];
-  std << kOffsetStd * curvature, kCurvatureStd * curvature * widths(kCarSteering), kUndersteerPrior[1];
-  return {kCarSteeringLags.size() * kCarDelays.size(), mean, std, noise, 1};
-}
-
-namespace {
-
 const Eigen::MatrixXd& values_by_speed() {
   static const Eigen::MatrixXd values = values_by_weights(kCarThrottle, false);
   return values;
@@ -115,8 +94,7 @@ const Eigen::MatrixXd& values_by_turn() {
 
 /// The candidates of a bank: lags, side by side for each delay.
 Eigen::MatrixXd by_delay(const CurveBank& bank) {
-  return bank.log_likelihoods().reshaped(std::ssize(bank.log_likelihoods()) / std::ssize(kCarDelays),
-                                         std::ssize(kCarDelays));
+  return bank.log_likelihoods().reshaped(Eigen::AutoSize, std::ssize(kCarDelays));
 }
 
 /// What throttle and steering tell of the lags and of their common delay.
@@ -175,6 +153,23 @@ CarSpread car_spread(const CurveBank& speed, const CurveBank& turn, const CarTim
 }
 
 }  // namespace
+
+Eigen::VectorXd throttle_ramps(double throttle) { return ramps(kCarThrottle, throttle); }
+Eigen::VectorXd steering_ramps(double steering) { return ramps(kCarSteering, steering); }
+
+CurveBank car_speed_bank(double top_speed, double noise) {
+  Eigen::VectorXd mean(kThrottleRamps + 1), std(kThrottleRamps + 1);
+  mean << top_speed * widths(kCarThrottle), kDragPrior[0];
+  std << (top_speed * widths(kCarThrottle)).array() + kUnsteep, kDragPrior[1];
+  return {kCarLags.size() * kCarDelays.size(), mean, std, noise, 0};
+}
+
+CurveBank car_turn_bank(double curvature, double noise) {
+  Eigen::VectorXd mean(kSteeringRamps + 2), std(kSteeringRamps + 2);
+  mean << 0.0, curvature * widths(kCarSteering), kUndersteerPrior[0];
+  std << kOffsetStd * curvature, kCurvatureStd * curvature * widths(kCarSteering), kUndersteerPrior[1];
+  return {kCarSteeringLags.size() * kCarDelays.size(), mean, std, noise, 1};
+}
 
 CarCurves car_of_candidates(const CurveBank& speed, const CurveBank& turn) {
   const CarTimes times(speed, turn);

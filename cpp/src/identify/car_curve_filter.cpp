@@ -24,7 +24,7 @@ constexpr double kGainExamples = 1.0;   // at full throttle and steering, that t
 constexpr double kBeyond = 3.0;         // times the top speed and the tightest turn no car moves
 constexpr std::size_t kSolveEvery = 5;  // twists
 
-/// Calls `act` with each command that is heard over [from, to] [s], `delay` after it was given, and for how long.
+/// Calls `act` with each command that reaches a car over [from, to] [s], `delay` after it was given, and for how long.
 template <class Act>
 void each_hold(const InputHistory& commands, double delay, double from, double to, const Act& act) {
   constexpr double kLongest = 0.05;  // [s] of a step

@@ -93,6 +93,10 @@ struct LatePeriods {
       : whole(static_cast<std::size_t>(delay / period + 1e-9)),
         part(std::max(delay / period - static_cast<double>(whole), 0.0)) {}
   bool none() const { return whole == 0 && part == 0.0; }
+  template <typename Scalar>
+  Scalar mean(Scalar now, Scalar before) const {
+    return static_cast<Scalar>(1.0 - part) * now + static_cast<Scalar>(part) * before;
+  }
   /// Periods before the past that are asked for.
   std::size_t reach() const { return whole + 1; }
 };
@@ -129,23 +133,23 @@ template <typename Scalar>
 void delay_twists(const LatePeriods& late, std::size_t rollouts, const std::vector<DriveCommand>& before,
                   std::size_t starts, CarBatch<Scalar>& batch) {
   const std::size_t known = before.size() / starts, periods = batch.v.size() / std::max<std::size_t>(rollouts, 1);
-  const auto now = static_cast<Scalar>(1.0 - late.part), earlier = static_cast<Scalar>(late.part);
   for (std::size_t k = late.none() ? known : periods + known; k-- > known;) {
     for (std::size_t r = 0; r < rollouts; ++r) {
       const DriveCommand* own = before.data() + (starts == 1 ? 0 : r) * known;
-      const auto from = [&](std::size_t i, std::vector<Scalar>& values, double DriveCommand::* number) {
-        return i < known ? static_cast<Scalar>(own[i].*number) : values[(i - known) * rollouts + r];
+      const auto delay = [&](std::vector<Scalar>& values, double DriveCommand::* number) {
+        const auto at = [&](std::size_t i) {
+          return i < known ? static_cast<Scalar>(own[i].*number) : values[(i - known) * rollouts + r];
+        };
+        values[(k - known) * rollouts + r] = late.mean(at(k - late.whole), at(k - late.whole - 1));
       };
-      const std::size_t at = (k - known) * rollouts + r, i = k - late.whole;
-      batch.v[at] = now * from(i, batch.v, &DriveCommand::v) + earlier * from(i - 1, batch.v, &DriveCommand::v);
-      batch.omega[at] =
-          now * from(i, batch.omega, &DriveCommand::omega) + earlier * from(i - 1, batch.omega, &DriveCommand::omega);
+      delay(batch.v, &DriveCommand::v);
+      delay(batch.omega, &DriveCommand::omega);
     }
   }
   for (std::size_t start = 0; start < starts; ++start) {
     for (std::size_t i = start * known + 1; i + late.whole < (start + 1) * known; ++i) {
-      batch.past.push_back({.v = (1.0 - late.part) * before[i].v + late.part * before[i - 1].v,
-                            .omega = (1.0 - late.part) * before[i].omega + late.part * before[i - 1].omega});
+      batch.past.push_back(
+          {.v = late.mean(before[i].v, before[i - 1].v), .omega = late.mean(before[i].omega, before[i - 1].omega)});
     }
   }
 }

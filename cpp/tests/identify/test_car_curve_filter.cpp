@@ -32,7 +32,7 @@ struct Drive {
   std::vector<BodyTwist> twists;  ///< means over each fifth of a second
 };
 
-/// Throttles of [0, 0.6] and any steering, each held for a second and a half, and heard after the car's delay.
+/// Throttles of [0, 0.6] and any steering, each held for a second and a half, and reaches it after its delay.
 Drive random_drive(const CarCurves& car, double seconds, double noise, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> throttle(0.0, 0.6), steering(-1.0, 1.0);
@@ -51,8 +51,8 @@ Drive random_drive(const CarCurves& car, double seconds, double noise, unsigned 
     command.push_back(now);
     constexpr int kFine = 10;
     for (int k = 0; k < kFine; ++k) {
-      const double heard = std::floor(i + (static_cast<double>(k) / kFine) - (car.delay / kStep) + 1e-9);
-      state = advanced(car, state, heard < 0.0 ? BodyTwist{} : command[static_cast<std::size_t>(heard)], kStep / kFine);
+      const double given = std::floor(i + (static_cast<double>(k) / kFine) - (car.delay / kStep) + 1e-9);
+      state = advanced(car, state, given < 0.0 ? BodyTwist{} : command[static_cast<std::size_t>(given)], kStep / kFine);
       sum.v += car_twist(car, state).v / kFine;
       sum.omega += car_twist(car, state).omega / kFine;
     }
@@ -94,7 +94,7 @@ TEST_CASE("a curve is sure where the car drove and as its prior where it did not
   CHECK(std::abs(found.understeer - 0.08) < 4.0 * std[single + 3]);
 }
 
-TEST_CASE("lags and a delay of throttle and steering are told apart, and known as well as they say") {
+TEST_CASE("lags and a delay of throttle and steering are found apart, and known as well as they say") {
   for (const auto& [lag, steering_lag, delay] :
        {std::array{0.4, 0.1, 0.1}, std::array{0.27, 0.06, 0.0}, std::array{0.42, 0.14, 0.07},
         std::array{0.66, 0.09, 0.12}, std::array{0.9, 0.18, 0.2}}) {

@@ -29,7 +29,7 @@ struct CarSpread {
 };
 
 /// lag V' = speed(throttle) - V (1 + cornering_drag |omega|);
-/// omega = V curvature(steering) / (1 + understeer V^2), steering through a lag of its own. It hears both `delay` late.
+/// omega = V curvature(steering) / (1 + understeer V^2), steering through a lag of its own. Both reach it `delay` late.
 struct CarCurves {
   KnotCurve speed;              ///< that a throttle in [-1, 1] leads to, straight ahead [m/s]
   KnotCurve curvature;          ///< of a slow path at a steering in [-1, 1] [1/m]
@@ -68,7 +68,8 @@ struct CarState {
   friend bool operator==(const CarState&, const CarState&) = default;
 };
 
-/// The car after `duration` [s] under a held command that it hears (v is the throttle, omega the steering, both in
+/// The car after `duration` [s] under a held command that has reached it (v is the throttle, omega the steering, both
+/// in
 /// [-1, 1]).
 CarState advanced(const CarCurves& car, const CarState& state, const BodyTwist& command, double duration);
 /// How it moves.

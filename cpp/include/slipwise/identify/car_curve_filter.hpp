@@ -99,7 +99,7 @@ class CarCurveFilter {
 
  private:
   struct Means;
-  /// Goes on under a held command that is heard with the delay of this place.
+  /// Goes on under a held command that came with the delay of this place.
   void follow_candidates(std::size_t delay, const BodyTwist& command, double duration, Means& means);
   void follow_car(const BodyTwist& command, double duration, Means& means);
   void learn(const Means& means, const BodyTwist& twist);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stream of measurements is told before it begins.
+// What a stream of measurements needs to know before it begins.
 #pragma once
 
 #include <algorithm>

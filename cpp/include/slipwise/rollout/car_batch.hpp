@@ -21,7 +21,7 @@ struct CarBatch {
 /// What a car does over each period of a batch whose commands are throttle (v) and steering (omega), those of the past
 /// too. A start's drive is what it does then (v, omega). Its steering has followed the past; without any, it stands
 /// where the drive's yaw rate asks for it. Over the past, the speed is taken as that of the start, and commands that
-/// the car has not heard by then act after it; where the past is too short to tell them, it goes on as it does.
+/// have not reached the car by then act after it; where the past is too short to tell them, it goes on as it does.
 /// \throws std::invalid_argument where starts and past do not fit, a command is not finite, the car's delay is negative
 /// or longer than a minute, or the processor lacks the instruction level.
 template <typename Scalar>
