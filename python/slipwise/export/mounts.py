@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from xml.sax.saxutils import quoteattr
+from html import escape  # xml.sax.saxutils imports ssl
 
 from slipwise.errors import ModelError
 from slipwise.export.origin import one_line
@@ -108,12 +108,12 @@ def _transform(mount: Mounted) -> str:
 
 def _urdf(mount: Mounted) -> list[str]:
     x, y, yaw = _pose(mount)
-    link = quoteattr(frame_name(mount.name))
+    link = escape(frame_name(mount.name))
     return [
-        f"<link name={link}/>",
-        f'<joint name={quoteattr(frame_name(mount.name) + "_joint")} type="fixed">',
+        f'<link name="{link}"/>',
+        f'<joint name="{link}_joint" type="fixed">',
         '  <parent link="base_link"/>',
-        f"  <child link={link}/>",
+        f'  <child link="{link}"/>',
         f'  <origin xyz="{x:g} {y:g} 0" rpy="0 0 {yaw:g}"/>',
         "</joint>",
     ]
