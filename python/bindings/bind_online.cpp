@@ -270,7 +270,8 @@ void bind_online(nb::module_& m) {
                    }),
                    "Of the gyro [rad/s], and its standard deviation.")
       .def_prop_ro("sources", locked([](const MotionLearner& learner) {
-                     return learned_sources(learner.sources(), learner.noise_scale());
+                     return learned_sources(learner.learned().sources(),
+                                            learner.learned().known().newest().slip->noise_scale);
                    }),
                    "Estimates of each pose source, where there are several.")
       .def("push_attitude", locked([](MotionLearner& learner, double t, double roll, double pitch) {
@@ -318,15 +319,15 @@ void bind_online(nb::module_& m) {
            "The surface changes now: to the one of this name, or to another where it is empty.")
       .def("completed", locked(&MotionLearner::completed), "A copy whose run has ended.")
       .def("probable_surfaces",
-           locked([](const MotionLearner& learner) { return learner.hypotheses().probable_surfaces(); }),
+           locked([](const MotionLearner& learner) { return learner.learned().hypotheses().probable_surfaces(); }),
            "How probable each surface is to be the one under the robot; empty if none are remembered.")
       .def("surfaces", locked(&MotionLearner::surfaces), "The surfaces that are remembered, as they are known now.")
       .def("on_surface", locked([](const MotionLearner& learner, const Surface& surface, std::size_t structure) {
-             return learner.hypotheses().on_surface(surface, structure_of(structure));
+             return learner.learned().hypotheses().on_surface(surface, structure_of(structure));
            }),
            "surface"_a, "structure"_a, "Slip on one of them in the terms of a structure; None where it has no memory.")
       .def("slip_now", locked([](const MotionLearner& learner, std::size_t structure) {
-             return learner.hypotheses().slip_now(structure_of(structure));
+             return learner.learned().hypotheses().slip_now(structure_of(structure));
            }),
            "structure"_a, "The same of the surface that is driven on, whether surfaces are remembered or not.")
       .def("begin_with", locked(&MotionLearner::begin_with), "known"_a, "law"_a, "wheels"_a,
@@ -338,7 +339,7 @@ void bind_online(nb::module_& m) {
       .def_static(
           "load", [](const nb::bytes& saved) { return Learner(MotionLearner::load(view_of(saved))); }, "saved"_a,
           "The learner whose bytes these are.")
-      .def_prop_ro("settings", locked([](const MotionLearner& learner) { return learner.settings(); }))
+      .def_prop_ro("settings", locked([](const MotionLearner& learner) { return learner.learned().settings(); }))
       .def_prop_ro("compared",
                    locked([](const MotionLearner& learner) { return learner.stream().evidence().compared(); }),
                    "How much of the driving was looked at for contradictions; it grows while inputs drive the robot.")

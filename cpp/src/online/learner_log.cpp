@@ -20,8 +20,9 @@ std::vector<Event> taken(std::deque<Event>& waiting) {
 
 }  // namespace
 
-void LearnerLog::say(LearnerEvent event, const RunClock& clock) {
-  event.t = clock.stamp(event.t);
+void LearnerLog::say(LearnerEvent event) {
+  event.run = run_;
+  event.t = clock_.stamp(event.t);
   events_.push_back(std::move(event));
   if (events_.size() > kMostEvents) {
     events_.pop_front();
@@ -29,13 +30,18 @@ void LearnerLog::say(LearnerEvent event, const RunClock& clock) {
   }
 }
 
-void LearnerLog::say(std::vector<SurfaceEvent> events, std::size_t run, double stamp) {
+void LearnerLog::say(std::vector<SurfaceEvent> events, std::size_t run, double t) {
   for (SurfaceEvent& event : events) {
-    surface_events_.push_back({.event = std::move(event), .run = run, .t = stamp});
+    surface_events_.push_back({.event = std::move(event), .run = run, .t = clock_.stamp(t)});
   }
   while (surface_events_.size() > kMostSurfaceEvents) {
     surface_events_.pop_front();
   }
+}
+
+void LearnerLog::reject(const Rejected& rejected) {
+  ++rejected_[static_cast<std::size_t>(rejected.stream)][static_cast<std::size_t>(rejected.reason)];
+  say({.kind = LearnerEvent::Kind::Rejected, .t = rejected.t, .stream = rejected.stream, .reason = rejected.reason});
 }
 
 std::vector<LearnerEvent> LearnerLog::take_events() { return taken(events_); }

@@ -1,100 +1,111 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments are learned piece by piece while measurements arrive; estimates are published at stamps, not at times.
+// Measurements go through the stream to what learns; what is asked is answered from both.
 #include "slipwise/online/motion_learner.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 
-#include "slipwise/lie/se2.hpp"
-#include "slipwise/linear/innovation.hpp"
+#include "slipwise/actuator/measured_start.hpp"
+#include "slipwise/filter/base_link_model.hpp"
 #include "slipwise/linear/same_stamp.hpp"
+#include "slipwise/online/behind_limits.hpp"
+#include "slipwise/online/judge.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/sample_gate.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
-#include "slipwise/online/student_t.hpp"
 #include "slipwise/segment/input_spread.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kPieces = 12.0;   // that it takes to learn a segment, or so
-constexpr double kMostPieces = 8;  // that a push learns of what waits, unless they are due
-constexpr int kSlices = 2;         // of refits that a push does beside what waits: some 100 us each
+constexpr double kLongest = 3600.0;    // [s] horizon
+constexpr double kFastestInput = 1e3;  // [m/s, rad/s]
+constexpr std::size_t kPathPoses = 5;  // of a prediction
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kOffsets = 1.5;  // [s] states are kept for longer than streams are late: no clock offset is larger
 
-std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
-
-const MotionModel& baseline_model() {
-  static const MotionModel model({"none", {}, {}, {}}, {});
-  return model;
-}
-
-/// Driven by `other` inputs, where there are some.
-Eigen::Vector3d pose_after(const MotionModel& model, const Eigen::VectorXd& mean, const DrivenSegment& driven,
-                           const std::optional<InputHistory>& other = std::nullopt) {
-  const SegmentPath path = integrate_segment(model, mean, other ? *other : driven.inputs, driven.segment);
-  return chart_of(path.directions(), path.rows());
-}
-
-DisturbanceFilter disturbance_of(const LearnerSettings& settings) {
-  return settings.learn_disturbance ? DisturbanceFilter(settings.disturbance) : DisturbanceFilter(DisturbanceModel{});
-}
-
-/// Of the knowledge before that one, nothing is asked [s].
-double longest_back(const StreamSettings& settings) {
-  double longest = kRecent * settings.segment_length;
-  for (const double horizon : settings.horizons) {
-    longest = std::max(longest, 2.0 * horizon + std::max(horizon, settings.age_of_known(horizon)));
+void check(const std::vector<InputSample>& future, double horizon) {
+  if (!(horizon > 0.0) || horizon > kLongest) {
+    throw std::invalid_argument("the horizon must be positive and at most " + std::to_string(kLongest) + " s, got " +
+                                std::to_string(horizon));
   }
-  return longest;
+  double before = -kNever;
+  for (const auto& [t, twist] : future) {
+    const double fastest = std::max({std::abs(twist.v), std::abs(twist.vy), std::abs(twist.omega)});
+    if (!(t > before) || !std::isfinite(t) || !(fastest <= kFastestInput)) {
+      throw std::invalid_argument("future inputs must be finite, in m/s and rad/s, and their stamps must increase");
+    }
+    before = t;
+  }
 }
 
-double known_at(const StreamItem& item) {
-  return std::visit(Takes{[](const WheelSegment& wheels) { return wheels.known_at; },
-                          [](const TwistSegment& twists) { return twists.driven.known_at; },
-                          [](const DrivenSegment& segment) { return segment.known_at; },
-                          [](const auto& other) { return other.driven.known_at; }},
-                    item);
+/// The same of base_link, by the clock of the inputs.
+MotionPosterior of_base_link(MotionPosterior posterior) {
+  KnownModel body = of_base_link(posterior.model, posterior.estimate);
+  posterior.model = std::move(body.model);
+  posterior.estimate = std::move(body.estimate);
+  posterior.prior_std.conservativeResize(posterior.model.size());
+  return posterior;
+}
+
+/// The inputs behind the limits of a drive, whose twist may have been measured at the start.
+InputHistory limited_ahead(const DrivenSegment& ahead, const ActuatorModel& actuator, const CommandLimits& limits) {
+  const Segment& segment = ahead.segment;
+  return segment.initial
+             ? limited_inputs(ahead.inputs, limits, measured_start(actuator, segment.start, *segment.initial))
+             : limited_inputs(ahead.inputs, limits);
+}
+
+/// The beginnings of what lies ahead, each pushed by what pushes it on the whole.
+std::vector<SegmentLinearization> pushed_beginnings(const MotionPosterior& motion, const DrivenSegment& ahead,
+                                                    const ForceBuffer& forces) {
+  std::vector<SegmentLinearization> found;
+  Segment part = ahead.segment;
+  for (std::size_t i = 1; i <= kPathPoses; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(kPathPoses);
+    part.end = ahead.segment.start + share * (ahead.segment.end - ahead.segment.start);
+    const KnownForce force = forces.mean(part.start, part.end).value_or(KnownForce{});
+    part.gx = force.x;
+    part.gy = force.y;
+    found.push_back(linearize_segment(motion.model, motion.estimate.mean, ahead.inputs, part));
+  }
+  return found;
 }
 
 }  // namespace
 
 MotionLearner::MotionLearner(const LearnerSettings& settings)
-    : settings_(settings),
-      stream_(settings.stream),
-      hypotheses_(settings.hypotheses),
-      disturbance_(disturbance_of(settings)),
-      localizer_(pose_filter_settings(settings)),
-      errors_(settings.stream.horizons),
-      before_run_(-kNever),
-      sources_(settings.stream, settings.hypotheses.filter) {
-  known_ = RecentKnowledge(now_known(-kNever), settings.learn_disturbance, kRecent * settings.stream.segment_length,
-                           longest_back(settings.stream));
-}
+    : stream_(settings.stream), learner_(settings), localizer_(pose_filter_settings(settings)), before_run_(-kNever) {}
+MotionLearner::MotionLearner(const MotionLearner&) = default;
+MotionLearner::MotionLearner(MotionLearner&&) noexcept = default;
+MotionLearner& MotionLearner::operator=(const MotionLearner&) = default;
+MotionLearner& MotionLearner::operator=(MotionLearner&&) noexcept = default;
+MotionLearner::~MotionLearner() = default;
 
 void MotionLearner::start_run() {
   end_run();
   before_run_ = std::max(before_run_, stream_.newest());
   stream_.start_run();
-  known_.start_run();
   localizer_.restart();
-  hypotheses_.start_run();
-  sources_.start_run();
-  runs_ += run_begins_ ? 0 : 1;
+  learner_.start_run();
+  if (!run_begins_) {
+    learner_.log().next_run();
+  }
   run_begins_ = true;
 }
 
 void MotionLearner::end_run() {
   stream_.end_run();
-  take_in();
-  work_through();
-  finish_sources();
+  learner_.take_in(stream_);
+  learner_.end_run(stream_);
 }
 
 MotionLearner MotionLearner::completed() const {
@@ -107,21 +118,20 @@ MotionLearner MotionLearner::completed() const {
 /// was set again: all is known by then.
 double MotionLearner::counted(double stamp) {
   if (!run_begins_ || !(std::abs(stamp) <= kLatestStamp)) {
-    return clock_.counted(stamp);
+    return clock().counted(stamp);
   }
   run_begins_ = false;
   const bool first = before_run_ == -kNever;
-  const bool set_again = later(before_run_, clock_.counted(stamp));
+  const bool set_again = later(before_run_, clock().counted(stamp));
   if (first || set_again) {
-    clock_.start_at(stamp);
-    stream_.count_from(clock_.stamp(0.0));
+    learner_.log().clock().start_at(stamp);
+    stream_.count_from(clock().stamp(0.0));
   }
   if (set_again) {
-    known_.restart_clock();
-    errors_.restart_clock();
+    learner_.restart_clock();
     before_run_ = -kNever;
   }
-  return clock_.counted(stamp);
+  return clock().counted(stamp);
 }
 
 void MotionLearner::push(const Measurement& measurement) {
@@ -134,210 +144,181 @@ void MotionLearner::push(const Measurement& measurement) {
   if (pose != nullptr && taken && !pose->position && pose->source == 0) {
     localizer_.push(*pose);
   }
-  take_in();
+  learner_.take_in(stream_);
   if (std::holds_alternative<CommandSample>(sample) || std::holds_alternative<WheelSample>(sample) ||
       std::holds_alternative<Tilt>(sample)) {
     localizer_.forget_without(t);
   }
-  int pieces = pieces_now(stream_.newest() - before);
-  while (pieces-- > 0 && work()) {
-  }
-  for (int slice = 0; slice < kSlices && hypotheses_.refit_slice(); ++slice) {
-  }
+  learner_.work_evenly(stream_, stream_.newest() - before);
 }
 
-/// Of what waits, so that it is learned evenly until it is due, where `passed` [s] lie between the stamps of pushes.
-int MotionLearner::pieces_now(double passed) const {
-  if (waiting_.empty() || !(passed > 0.0) || std::isinf(passed)) {
-    return 1;
+void MotionLearner::forget(double fraction) {
+  if (!(fraction >= 0.0) || !(fraction <= 1.0)) {
+    throw std::invalid_argument("what is forgotten is a fraction between 0 and 1, got " + std::to_string(fraction));
   }
-  const double left = known_at(waiting_.front()) + kReady - stream_.newest();
-  double pieces = 0.0;
-  for (const StreamItem& item : waiting_) {
-    const bool is_segment = std::holds_alternative<DrivenSegment>(item) || std::holds_alternative<SlipSegment>(item);
-    pieces += is_segment ? kPieces : 1.0;
-  }
-  return static_cast<int>(std::ceil(std::clamp(pieces * passed / std::max(left, passed), 1.0, kMostPieces)));
+  learner_.change(stream_, [fraction](MotionHypotheses& hypotheses, const DisturbanceModel& /*law*/) {
+    hypotheses.forget(fraction);
+  });
 }
 
-/// Takes over what the stream has complete. What should have been learned by now is learned at once, so that results
-/// do not depend on how many pushes there were meanwhile.
-void MotionLearner::take_in() {
-  for (StreamItem& item : stream_.take_items()) {
-    waiting_.push_back(std::move(item));
-  }
-  for (const Rejected& rejected : stream_.take_rejected()) {
-    reject(rejected);
-  }
-  work_until(stream_.newest() - kReady);
+void MotionLearner::start_drive(const DriveStart& start) {
+  end_run();
+  const std::size_t run = learner_.log().run();
+  const double ended = stream_.newest();
+  start_run();
+  learner_.start_drive(start, run, ended);
 }
 
-/// One bounded piece; whether there is more.
-bool MotionLearner::work() {
-  if (waiting_.empty()) {
-    if (settings_.learn_disturbance) {  // so that a prediction need not find out where slip is now
-      const Knowledge& known = known_.at(stream_.newest() - kReady);
-      known_.slip_after(*known.disturbance, known.motion, known_.segments_before(stream_.newest()));
+/// Without a memory there is nothing to recall, and slip may jump.
+void MotionLearner::cue_surface(const std::string& label) {
+  const bool remember = learner_.settings().hypotheses.average.surfaces.remember;
+  if (!remember && !label.empty()) {
+    return;
+  }
+  learner_.change(stream_, [&](MotionHypotheses& hypotheses, const DisturbanceModel& law) {
+    if (remember) {
+      hypotheses.cue_surface(law, label);
+    } else {
+      hypotheses.expect_change();
     }
-    return false;
-  }
-  if (std::holds_alternative<SourceSegment>(waiting_.front())) {
-    learn_source();
-    return !waiting_.empty();
-  }
-  started_ = learn_front();
-  if (!started_) {
-    waiting_.pop_front();
-  }
-  return !waiting_.empty();
+  });
 }
 
-/// A piece of what waits longest; whether there is more of it.
-bool MotionLearner::learn_front() {
-  return std::visit(Takes{[&](WheelSegment& wheels) {
-                            hypotheses_.learn_actuator(wheels);
-                            limits_.keep_wheels(std::move(wheels));
-                            return false;
-                          },
-                          [&](TwistSegment& twists) {
-                            limits_.keep_twists(std::move(twists.driven));
-                            return false;
-                          },
-                          [&](const SlipSegment& slip) {
-                            if (!started_) {
-                              hypotheses_.start_slip(slip.driven);
-                              return true;
-                            }
-                            const bool more = hypotheses_.advance_slip();
-                            if (!more) {
-                              consider_surfaces(slip.driven.segment.end);
-                            }
-                            return more;
-                          },
-                          [&](const TargetSegment& target) {
-                            judge(target);
-                            return false;
-                          },
-                          [](const SourceSegment& /*of another source*/) { return false; },
-                          [&](const DrivenSegment& segment) {
-                            if (!started_) {
-                              learn_disturbance(segment);
-                              hypotheses_.start(segment, stream_.wheels_known());
-                              return true;
-                            }
-                            const bool more = hypotheses_.advance();
-                            if (!more) {
-                              consider_surfaces(segment.segment.end);
-                              publish(segment);
-                            }
-                            return more;
-                          }},
-                    waiting_.front());
+void MotionLearner::cue_terrain(const TerrainAnswer& answer) {
+  check_answer(answer);
+  learner_.change(stream_, [&](MotionHypotheses& hypotheses, const DisturbanceModel& law) {
+    hypotheses.hear_terrain(law, answer);
+  });
 }
 
-void MotionLearner::work_until(double t) {
-  while (!waiting_.empty() && !later(known_at(waiting_.front()), t)) {
-    work();
-  }
+void MotionLearner::begin_with(const KnownBefore& known, const DisturbanceModel& law, bool wheels) {
+  learner_.begin_with(stream_, known, law, wheels);
 }
 
-void MotionLearner::work_through() {
-  while (work()) {
-  }
+std::vector<std::string> MotionLearner::add_surfaces(const KnownBefore& other) {
+  return learner_.add_surfaces(stream_, other);
 }
 
-/// How slip differs now is learned about what was known before the segment, from the segments before it: how late they
-/// came says nothing of slip.
-void MotionLearner::learn_disturbance(const DrivenSegment& segment) {
-  if (settings_.learn_disturbance) {
-    const auto& before = known_.newest().slip;
-    const SlipNow& slip = known_.slip_after(disturbance_, before, known_.segments_until(segment.segment.start));
-    disturbance_.learn(*before, slip, segment);
-    hypotheses_.expect_lasting(disturbance_.law());
+SurfaceBank MotionLearner::surfaces() const { return completed().learner_.surfaces(); }
+
+PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, double horizon, double embargo,
+                                     const KnownAhead& known) {
+  check(future, horizon);
+  const auto counted = [this](auto samples) {
+    std::ranges::for_each(samples, [this](auto& sample) { sample.t = clock().counted(sample.t); });
+    return samples;
+  };
+  const std::vector<InputSample> inputs = counted(future);
+  if (stream_.newest() == -kNever) {
+    throw std::invalid_argument("nothing was measured in this run yet: push measurements before a prediction");
   }
+  learner_.work_until(stream_, stream_.newest() - kReady);
+  Knowledge knowledge = learner_.known().at(stream_.newest() - std::max(embargo, kReady));
+  const Structure structure = knowledge.motion->structure;  // whose errors are known
+  DrivenSegment ahead = stream_.drive().ahead(stream_.over(stream_.newest(), stream_.newest() + horizon), inputs);
+  ahead.segment.measured = measured_pose({});
+  CommandLimits limits;
+  if (known.limits != nullptr && known.limits->posterior != nullptr) {
+    knowledge.motion = known.limits->posterior;
+    limits = known.limits->search.drive.limits;
+    ahead.inputs = limited_ahead(ahead, knowledge.motion->model.actuator(knowledge.motion->estimate.mean), limits);
+  }
+  const SlipNow slip = learner_.slip_at_newest(stream_, knowledge, limits);
+  const MotionPosterior motion = of_base_link(*motion_amid(knowledge, ahead.segment, learner_.settings()));
+  const auto beginnings =
+      known.forces.empty()
+          ? linearize_beginnings(motion.model, motion.estimate.mean, ahead.inputs, ahead.segment, kPathPoses)
+          : pushed_beginnings(motion, ahead, stream_.drive().forces_ahead(stream_.newest(), counted(known.forces)));
+  PredictedPath path{.start = stream_.newest(),
+                     .t = {},
+                     .poses = {},
+                     .covariances = {},
+                     .students = {},
+                     .structure = knowledge.motion->structure};
+  std::ranges::transform(beginnings, std::back_inserter(path.t),
+                         [](const SegmentLinearization& part) { return part.path.times.back(); });
+  path.t.back() = ahead.segment.end;
+  const auto along = knowledge.disturbance->predict_along(motion, slip, beginnings, ahead.segment);
+  const auto of_inputs =
+      input_covariances(motion.model, motion.estimate.mean, ahead,
+                        stream_.drive().spread_ahead(path.start, path.start + horizon, inputs), path.t);
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    path.students.push_back(learner_.errors().student(stream_.newest(), path.t[i] - path.start, structure));
+    path.poses.emplace_back(along[i].pose);
+    path.covariances.emplace_back(path.students.back().inflation * along[i].covariance + of_inputs[i]);
+  }
+  path.start = clock().stamp(path.start);
+  std::ranges::for_each(path.t, [this](double& t) { t = clock().stamp(t); });
+  return path;
 }
 
-void MotionLearner::publish(const DrivenSegment& segment) {
-  known_.publish(now_known(segment.known_at), segment);
-  if (settings_.stream.from_commands) {
-    limits_.keep(segment);
-  }
-  seconds_ += segment.segment.end - segment.segment.start;
-  LearnerEvent event{.kind = LearnerEvent::Kind::SegmentLearned, .run = runs_, .t = segment.segment.end};
-  event.updates = hypotheses_.updates();
-  event.weights = hypotheses_.weights();
-  event.surfaces = hypotheses_.probable_surfaces();
-  for (std::size_t i = 0; i < kStructures; ++i) {
-    event.posteriors[i] =
-        supported(hypotheses_.of(static_cast<Structure>(i)), stream_.wheel_interval(), hypotheses_.count());
-  }
-  const bool refitted = std::ranges::any_of(event.updates, &StructureUpdate::refitted);
-  const bool alarm = event.updates[index(known_.newest().slip->structure)].change.alarm;
-  log_.say(event, clock_);
-  if (alarm) {
-    log_.say({.kind = LearnerEvent::Kind::TerrainChange, .run = runs_, .t = segment.segment.end}, clock_);
-  }
-  if (refitted) {
-    log_.say({.kind = LearnerEvent::Kind::Refit, .run = runs_, .t = segment.segment.end}, clock_);
-  }
+LearnedModel MotionLearner::model() const {
+  const MotionLearner complete = completed();
+  const SegmentLearner& learner = complete.learner_;
+  const SegmentStream& stream = complete.stream_;
+  const Knowledge& known = learner.known().newest();
+  LearnedModel learned{.known = known,
+                       .students = learner.errors().nominal(known.motion->structure),
+                       .held_out = learner.errors().predictions(),
+                       .weights = learner.hypotheses().weights(),
+                       .range = stream.range(),
+                       .rates = stream.rates(),
+                       .held = stream.held(),
+                       .steepest = stream.steepest(),
+                       .seconds = learner.seconds(),
+                       .segments = learner.hypotheses().count(),
+                       .rejected = learner.log().rejected(),
+                       .car = stream.drive().car_curves(),
+                       .evidence = stream.evidence()};
+  learned.known.until = clock().stamp(learned.known.until);
+  const double spacing = stream.wheel_interval();
+  learned.known.motion = supported(learned.known.motion, spacing, learned.segments);
+  learned.known.slip = supported(learned.known.slip, spacing, learned.segments);
+  return learned;
 }
 
-/// Predicts a target from what was known before it, then holds it against what was measured.
-void MotionLearner::judge(const TargetSegment& target) {
-  const double horizon = settings_.stream.horizons[target.horizon];
-  const double age = settings_.stream.age_of_known(horizon);
-  const Knowledge& known = known_.at(target.driven.segment.start - age);
-  const DrivenSegment driven =
-      known.sources ? measured_by(*known.sources, target, known.motion->noise_scale) : target.driven;
-  const Segment& segment = driven.segment;
-  const SegmentList recent = known_.segments_before(segment.start);
-  const SlipNow& slip = known_.slip_after(*known.disturbance, known.motion, recent);
-  auto [expected, nominal] = known.disturbance->predict_both(*aged(known, segment), slip, driven);
-  const Rows measured = rows_of(segment.measured);
-  const Directions directions = directions_of(segment.measured);
-  const Structure structure = known.motion->structure;
-  const HorizonErrors::Known earlier = errors_.before(target.horizon, segment.start - age);
-  const StudentT student = earlier.students[index(structure)];
-  const double as_three = 3.0 / static_cast<double>(measured.size());  // rows, whose errors are known by three
-  const RowsCovariance of_inputs =
-      input_covariance(known.motion->model, known.motion->estimate.mean, driven, target.spread);
-  expected.covariance += of_inputs / student.inflation;  // which does not grow them: they are of no errors so far
-  nominal.covariance += of_inputs / student.inflation;
-  const double squared =
-      as_three * normalised_square(shorter_error(directions, measured, expected.pose), expected.covariance);
-  const double nominal_squared =
-      as_three * normalised_square(shorter_error(directions, measured, nominal.pose), nominal.covariance);
-  errors_.of(target.horizon).learn(driven.known_at, structure, squared, nominal_squared, horizon + age);
-  const Knowledge& after = known_.at(segment.end);
-  const double used = std::max({known.until, recent.empty() ? -kNever : recent.back()->known_at, earlier.until});
-  const bool at_start = segment.initial || settings_.stream.car;  // what the drive did then was measured
-  const auto prediction = std::make_shared<const HeldOutPrediction>(
-      HeldOutPrediction{.run = runs_,
-                        .horizon = target.horizon,
-                        .start = clock_.stamp(segment.start),
-                        .end = clock_.stamp(segment.end),
-                        .pose = chart_of(directions, expected.pose),
-                        .covariance = student.inflation * chart_covariance(directions, expected.covariance),
-                        .student = student,
-                        .nominal_nis = nominal_squared,
-                        .structure = structure,
-                        .measured = chart_of(directions, measured),
-                        .baseline = pose_after(baseline_model(), Eigen::VectorXd(0), driven, target.baseline),
-                        .in_sample = pose_after(after.motion->model, after.motion->estimate.mean, driven),
-                        .learned_until = clock_.stamp(at_start ? segment.start : std::min(used, segment.start))});
-  errors_.keep(prediction);
-  log_.say({.kind = LearnerEvent::Kind::HeldOut, .run = runs_, .t = segment.end, .prediction = prediction}, clock_);
+std::optional<ActuatorLimits> MotionLearner::find_limits(double wheel_separation) const {
+  if (learner_.settings().hypotheses.wheelbase > 0.0) {
+    return std::nullopt;  // limits are of yaw rates, and this drive takes curvatures
+  }
+  return completed().learner_.find_limits(wheel_separation);
 }
 
-/// Counts and says what was rejected.
-void MotionLearner::reject(const Rejected& rejected) {
-  log_.count(rejected.stream, rejected.reason);
-  log_.say({.kind = LearnerEvent::Kind::Rejected,
-            .run = runs_,
-            .t = rejected.t,
-            .stream = rejected.stream,
-            .reason = rejected.reason},
-           clock_);
+PoseFilterSettings pose_filter_settings(const LearnerSettings& settings) {
+  const MotionNoise& shape = settings.hypotheses.filter.noise.shape;
+  return {.nominal = {.xy = shape.pose_std_xy, .yaw = shape.pose_std_yaw},
+          .late_factor = settings.stream.rules.late_factor,
+          .keep = settings.stream.latency + kOffsets};
+}
+
+MotionNow MotionLearner::motion_now() {
+  const auto leg = [this](const LegKnowledge& known, double start, double end) {
+    return motion_leg(known, stream_.drive().stretch(stream_.over(start, end), leg_memory(*known.posterior)));
+  };
+  const auto clock = learner_.known().at(stream_.newest() - kReady).clock;
+  return {.inputs = stream_.drive().inputs(),
+          .newest = stream_.newest(),
+          .latency = stream_.settings().latency,
+          .learned = learner_.seconds(),
+          .late = clock ? pose_lateness(*clock, stream_.wheel_interval()) : PoseLateness{},
+          .at = [this](double t, double horizon) { return learner_.for_leg(t, horizon); },
+          .leg = leg};
+}
+
+std::optional<Odometry> MotionLearner::odometry() {
+  std::optional<Odometry> found = localizer_.odometry(motion_now());
+  if (found) {
+    found->t = clock().stamp(found->t);
+  }
+  return found;
+}
+
+MotionState MotionLearner::motion_monitor() {
+  MotionState state = localizer_.monitor(motion_now());
+  if (state.since) {
+    state.since = clock().stamp(*state.since);
+  }
+  return state;
 }
 
 }  // namespace slipwise

@@ -21,7 +21,7 @@ KnownBefore handed_out(const MotionLearner& learner) {
   KnownBefore known{.model = *learner.model().known.slip, .surfaces = {}, .labels = {}};
   const SurfaceBank bank = learner.surfaces();
   for (const Surface& surface : bank.surfaces()) {
-    const auto there = learner.hypotheses().on_surface(surface, Structure::Joint);
+    const auto there = learner.learned().hypotheses().on_surface(surface, Structure::Joint);
     REQUIRE(there);
     known.surfaces.push_back({.facts = surface, .memory = there->memory});
   }
@@ -39,7 +39,7 @@ TEST_CASE("what is known of the slip now is said without a memory of surfaces, t
   push(other, drive_on(0.5, 11, kVisit, 0.0));
   other.end_run();
   CHECK(other.surfaces().surfaces().empty());
-  const auto now = other.hypotheses().slip_now(Structure::Joint);
+  const auto now = other.learned().hypotheses().slip_now(Structure::Joint);
   REQUIRE(now);
   CHECK(now->memory.bases.size() == now->memory.memory.slips.size());
   const MotionPosterior known = *other.model().known.slip;
@@ -81,8 +81,8 @@ TEST_CASE("a surface that is handed over and taken in again is the same one") {
   const auto after = begins.surfaces().surfaces();
   REQUIRE(after.size() == 2);
   for (std::size_t i = 0; i < 2; ++i) {
-    const AverageState was = other.hypotheses().on_surface(before[i], Structure::Joint)->state;
-    const AverageState is = begins.hypotheses().on_surface(after[i], Structure::Joint)->state;
+    const AverageState was = other.learned().hypotheses().on_surface(before[i], Structure::Joint)->state;
+    const AverageState is = begins.learned().hypotheses().on_surface(after[i], Structure::Joint)->state;
     CHECK(is.estimate.mean.isApprox(was.estimate.mean, 1e-9));
     CHECK(is.noise_scale.isApprox(was.noise_scale, 1e-9));
     CHECK(after[i].name == before[i].name);
@@ -102,10 +102,12 @@ TEST_CASE("of two memories, surfaces that cannot be told apart become one") {
   REQUIRE(events.size() == 1);
   CHECK(events[0].event.name == "surface 2");
   CHECK(events[0].event.other == "surface 1 (2)");
-  const double once = first.hypotheses()
+  const double once = first.learned()
+                          .hypotheses()
                           .on_surface(first.surfaces().surfaces()[1], Structure::Joint)
                           ->state.estimate.covariance.trace();
-  CHECK(begins.hypotheses().on_surface(surfaces[1], Structure::Joint)->state.estimate.covariance.trace() < once);
+  CHECK(begins.learned().hypotheses().on_surface(surfaces[1], Structure::Joint)->state.estimate.covariance.trace() <
+        once);
 }
 
 TEST_CASE("a learner begins with surfaces before it has learned anything, or not at all") {

@@ -73,18 +73,19 @@ TEST_CASE("a worse source that covers the same time changes nothing of what is l
     const MotionLearner alone = learned(learner_settings(from_commands), run);
     const MotionLearner both = learned(two_sources(from_commands), with_second(run, false));
     for (std::size_t i = 0; i < kStructures; ++i) {
-      CHECK(both.hypotheses().weights()[i] == doctest::Approx(alone.hypotheses().weights()[i]).epsilon(1e-6));
+      CHECK(both.learned().hypotheses().weights()[i] ==
+            doctest::Approx(alone.learned().hypotheses().weights()[i]).epsilon(1e-6));
     }
     for (const Structure structure : {Structure::Joint, Structure::Cascaded, Structure::Direct}) {
-      const auto expected = alone.hypotheses().of(structure);
-      const auto found = both.hypotheses().of(structure);
+      const auto expected = alone.learned().hypotheses().of(structure);
+      const auto found = both.learned().hypotheses().of(structure);
       REQUIRE((found == nullptr) == (expected == nullptr));
       CHECK((found == nullptr || found->estimate.mean.isApprox(expected->estimate.mean, 1e-9)));
     }
     CHECK(both.model().segments == alone.model().segments);
-    REQUIRE(both.sources().learned().size() == 2);
-    CHECK(both.sources().learned()[1] == 0);
-    const Estimate& found = both.sources().calibrations()[1].estimate();
+    REQUIRE(both.learned().sources().learned().size() == 2);
+    CHECK(both.learned().sources().learned()[1] == 0);
+    const Estimate& found = both.learned().sources().calibrations()[1].estimate();
     const Eigen::Vector4d truth(from_commands ? kLate : kLate - kEarly, kMount.x, kMount.y, kMount.theta);
     const Eigen::Vector4d std = found.covariance.diagonal().cwiseSqrt();
     CAPTURE((found.mean - truth).transpose());
@@ -94,15 +95,15 @@ TEST_CASE("a worse source that covers the same time changes nothing of what is l
     CHECK(error[0] < 3.0 * std[0]);
     CHECK(error[3] < 3.0 * std[3]);
     CHECK(error.maxCoeff() < (from_commands ? 0.15 : 0.08));  // while lag and delay are open, a place is not seen well
-    CHECK(both.sources().noise().beside_best({kPoseFixes, kPoseFixes}) > 1.5);
+    CHECK(both.learned().sources().noise().beside_best({kPoseFixes, kPoseFixes}) > 1.5);
   }
 }
 
 TEST_CASE("it fills the gaps of the better one, and results do not depend on how late and out of order it comes") {
   const Recording run = with_second(streamed_robot(1, 90.0), true);
   const MotionLearner expected = learned(two_sources(false), run);
-  CHECK(expected.sources().learned()[1] >= 17);
-  CHECK(expected.sources().learned()[1] <= 22);
+  CHECK(expected.learned().sources().learned()[1] >= 17);
+  CHECK(expected.learned().sources().learned()[1] <= 22);
   std::vector<MeasuredPose> second;
   std::ranges::copy_if(run.poses, std::back_inserter(second), [](const MeasuredPose& p) { return p.source == 1; });
   std::mt19937_64 random(3);

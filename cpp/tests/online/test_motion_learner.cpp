@@ -72,7 +72,7 @@ TEST_CASE("a segment is learned before it is due, though measurements come rarel
     if (i % 20 == 0) {
       learner.push(run.poses[i / 2]);
     }
-    learned_at.resize(learner.hypotheses().count(), run.wheels[i].t);
+    learned_at.resize(learner.learned().hypotheses().count(), run.wheels[i].t);
   }
   std::size_t segment = 0;
   for (const LearnerEvent& event : learner.events()) {

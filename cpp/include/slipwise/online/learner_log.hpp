@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a learner has to say: events that wait for a call, and what was rejected.
+// What a learner has to say: events that wait for a call, and what was rejected; each with its run and its stamp.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 #include "slipwise/online/held_out.hpp"
 #include "slipwise/online/rejection.hpp"
 #include "slipwise/online/run_clock.hpp"
+#include "slipwise/online/stream_output.hpp"
 
 namespace slipwise {
 
@@ -21,8 +22,8 @@ struct LearnerEvent {
   enum class Kind : std::uint8_t { SegmentLearned, Rejected, TerrainChange, HeldOut, Refit };
   friend constexpr std::size_t enumerators(Kind /*type*/) { return 5; }
   Kind kind;
-  std::size_t run;  ///< in the order in which runs were started
-  double t;         ///< [s]
+  double t;             ///< [s]
+  std::size_t run = 0;  ///< in the order in which runs were started
   Stream stream = Stream::Pose;
   Reason reason = Reason::NotFinite;
   std::array<StructureUpdate, kStructures> updates = {};
@@ -45,11 +46,19 @@ struct DatedSurfaceEvent {
 /// where they wait for long.
 class LearnerLog {
  public:
-  void say(LearnerEvent event, const RunClock& clock);
-  void say(std::vector<SurfaceEvent> events, std::size_t run, double stamp);
-  void count(Stream stream, Reason reason) {
-    ++rejected_[static_cast<std::size_t>(stream)][static_cast<std::size_t>(reason)];
-  }
+  /// By which stamps are counted.
+  RunClock& clock() { return clock_; }
+  const RunClock& clock() const { return clock_; }
+  /// The present run, in the order in which runs were started.
+  std::size_t run() const { return run_; }
+  void next_run() { ++run_; }
+
+  /// Something of the present run.
+  void say(LearnerEvent event);
+  /// Of the surfaces, at `t` [s] of any run.
+  void say(std::vector<SurfaceEvent> events, std::size_t run, double t);
+  /// Counts and says what was rejected.
+  void reject(const Rejected& rejected);
 
   std::vector<LearnerEvent> take_events();
   std::vector<DatedSurfaceEvent> take_surface_events();
@@ -59,10 +68,12 @@ class LearnerLog {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.events_, self.dropped_, self.rejected_, self.surface_events_);
+    a(self.clock_, self.run_, self.events_, self.dropped_, self.rejected_, self.surface_events_);
   }
 
  private:
+  RunClock clock_;
+  std::size_t run_ = 0;
   std::deque<LearnerEvent> events_;
   std::size_t dropped_ = 0;
   RejectionCounts rejected_{};

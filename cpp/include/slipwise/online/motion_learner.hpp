@@ -5,9 +5,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <deque>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,22 +12,13 @@
 
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 #include "slipwise/online/held_out.hpp"
-#include "slipwise/online/known_sources.hpp"
 #include "slipwise/online/learner_log.hpp"
-#include "slipwise/online/limit_evidence.hpp"
+#include "slipwise/online/learner_settings.hpp"
 #include "slipwise/online/localizer.hpp"
-#include "slipwise/online/recent_knowledge.hpp"
-#include "slipwise/online/run_clock.hpp"
+#include "slipwise/online/segment_learner.hpp"
 #include "slipwise/online/segment_stream.hpp"
 
 namespace slipwise {
-
-struct LearnerSettings {
-  StreamSettings stream = {};
-  HypothesisSettings hypotheses = {};
-  DisturbanceSettings disturbance = {};
-  bool learn_disturbance = true;  ///< how slip differs from what was learned, now and then
-};
 
 /// The filter over poses that goes with a learner.
 PoseFilterSettings pose_filter_settings(const LearnerSettings& settings);
@@ -90,8 +78,8 @@ class MotionLearner {
   void push(const Measurement& measurement);
 
   /// What happened since the last call; the oldest are dropped, and counted, when they wait for long.
-  std::vector<LearnerEvent> events() { return log_.take_events(); }
-  std::size_t dropped_events() const { return log_.dropped(); }
+  std::vector<LearnerEvent> events() { return learner_.log().take_events(); }
+  std::size_t dropped_events() const { return learner_.log().dropped(); }
 
   /// Where the robot will be if it is given the `future` inputs, over `horizon` [s] from the newest measurement on.
   /// Parameters are those known `embargo` [s] before.
@@ -129,7 +117,7 @@ class MotionLearner {
   /// The surfaces that are remembered, the present one as it is known now.
   SurfaceBank surfaces() const;
   /// What happened to them since the last call; the oldest are dropped when they wait for long.
-  std::vector<DatedSurfaceEvent> surface_events() { return log_.take_surface_events(); }
+  std::vector<DatedSurfaceEvent> surface_events() { return learner_.log().take_surface_events(); }
   /// Begins with what another learner knew: its robot, its slip disturbance `law` and the surfaces it remembers. How
   /// large errors are is learned again. `wheels` says whether wheel speeds will come beside the commands.
   /// \throws std::invalid_argument when something was learned already, or the terms are not those that are learned.
@@ -139,71 +127,34 @@ class MotionLearner {
   /// \throws std::invalid_argument when the terms are not those that are learned.
   std::vector<std::string> add_surfaces(const KnownBefore& other);
 
-  /// What explains the motion: structures, surfaces and how probable each is, slip on one of them.
-  const MotionHypotheses& hypotheses() const { return hypotheses_; }
-  /// Estimates of the sources of poses, where there are several.
-  const KnownSources& sources() const { return sources_; }
+  /// What was learned: structures and surfaces, sources of poses.
+  const SegmentLearner& learned() const { return learner_; }
   /// What was measured: the bias of a gyro, how the sensor of roll and pitch sits, what contradicts each other.
   const SegmentStream& stream() const { return stream_; }
-  /// Learned factor of the noise variances of (x, y, theta), of the poses of the first.
-  Eigen::Vector3d noise_scale() const { return known_.newest().slip->noise_scale; }
-  const LearnerSettings& settings() const { return settings_; }
   /// All of it as bytes, from which `load` makes a learner that goes on to the same results.
   std::string save() const;
   /// \throws std::invalid_argument, saying what to do, when these are not the bytes that this version saved.
   static MotionLearner load(std::string_view saved);
 
   /// Stamp of the newest measurement of the run [s]; minus infinity before the first.
-  double newest() const { return clock_.stamp(stream_.newest()); }
+  double newest() const { return clock().stamp(stream_.newest()); }
 
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.settings_, self.stream_, self.hypotheses_, self.disturbance_, self.waiting_, self.started_, self.known_);
-    a(self.limits_, self.errors_, self.log_, self.runs_, self.run_begins_, self.before_run_, self.seconds_);
-    a(self.sources_, self.clock_);
+    a(self.learner_, self.stream_, self.run_begins_, self.before_run_);
   }
 
  private:
-  void take_in();
-  bool work();
-  int pieces_now(double passed) const;
-  bool learn_front();
-  void learn_source();
-  void reject(const Rejected& rejected);
-  void finish_sources();
-  void work_until(double t);
-  void work_through();
-  void learn_disturbance(const DrivenSegment& segment);
-  void publish(const DrivenSegment& segment);
-  void judge(const TargetSegment& target);
-  std::shared_ptr<const MotionPosterior> aged(const Knowledge& known, const Segment& segment) const;
-  SlipNow slip_at_newest(const Knowledge& known, const CommandLimits& limits);
-  std::vector<DrivenSegment> complete_now() const;
-  Knowledge now_known(double until) const;
-  MotionNow motion_now();
   double counted(double stamp);
-  void consider_surfaces(double t);
-  void note_surfaces(std::size_t run, double t);
-  void check_loaded() const;
+  const RunClock& clock() const { return learner_.log().clock(); }
+  MotionNow motion_now();
 
-  LearnerSettings settings_;
-  RunClock clock_;  ///< by which all stamps below are counted, but for those of events and held-out predictions
   SegmentStream stream_;
-  MotionHypotheses hypotheses_;
-  DisturbanceFilter disturbance_;
-  std::deque<StreamItem> waiting_;  ///< segments in the order in which they are learned
-  bool started_ = false;            ///< whether the first of them is being learned
-  RecentKnowledge known_;
-  LimitEvidence limits_;
-  Localizer localizer_;  ///< not saved
-  HeldOutErrors errors_;
-  LearnerLog log_;
-  std::size_t runs_ = 0;
+  SegmentLearner learner_;  ///< by its clock all stamps here are counted
+  Localizer localizer_;     ///< not saved
   bool run_begins_ = true;  ///< no measurement of the run has come yet
   double before_run_;       ///< newest stamp of the runs before [s]
-  double seconds_ = 0.0;
-  KnownSources sources_;  ///< where there are several, or fixes
 };
 
 }  // namespace slipwise
