@@ -32,10 +32,10 @@ bool stronger(const SlipChange& a, const SlipChange& b) {
 
 }  // namespace
 
-CascadedModel::CascadedModel() : CascadedModel(ModelAverage(), {}) {}
+CascadedModel::CascadedModel() : CascadedModel(RememberingAverage(), {}) {}
 
-CascadedModel::CascadedModel(ModelAverage slip, const CausalFilterSettings& settings, double wheelbase)
-    : model_(joined_model(slip.model(), wheelbase)),
+CascadedModel::CascadedModel(RememberingAverage slip, const CausalFilterSettings& settings, double wheelbase)
+    : model_(joined_model(slip.average().model(), wheelbase)),
       noise_(settings.noise.shape),
       slip_(std::move(slip)),
       actuator_(settings),
@@ -52,7 +52,7 @@ CascadedModel::CascadedModel(ModelAverage slip, const CausalFilterSettings& sett
 }
 
 void CascadedModel::restart() {
-  known_slip_ = EstimateHistory(slip_.state().estimate);
+  known_slip_ = EstimateHistory(slip_.average().state().estimate);
   known_actuator_ = EstimateHistory(actuator_.estimate());
 }
 
@@ -65,10 +65,10 @@ bool CascadedModel::advance_slip() {
   if (slip_.advance()) {
     return true;
   }
-  known_slip_.keep(slip_until_, slip_.state().estimate);
-  refitted_since_ = refitted_since_ || slip_.refitted();
-  if (stronger(slip_.change(), change_since_)) {
-    change_since_ = slip_.change();
+  known_slip_.keep(slip_until_, slip_.average().state().estimate);
+  refitted_since_ = refitted_since_ || slip_.average().refitted();
+  if (stronger(slip_.average().change(), change_since_)) {
+    change_since_ = slip_.average().change();
   }
   return false;
 }
@@ -105,7 +105,7 @@ ScoredSegment CascadedModel::predict(const DrivenSegment& segment) {
 }
 
 void CascadedModel::refresh() {
-  const AverageState slip = slip_.state();
+  const AverageState slip = slip_.average().state();
   const Estimate actuator = actuator_.estimate();
   const Eigen::Index size = model_.size();
   MotionPosterior all{.model = model_,

@@ -11,7 +11,6 @@
 
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 #include "slipwise/linear/present.hpp"
-#include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
 namespace {
@@ -23,97 +22,7 @@ std::size_t place_of(const MotionPosterior& model) {
   return model.model.learned().response ? kCascaded : kJoint;
 }
 
-/// Those of its parameters after slip that a model knows by name; others keep what `robot` has.
-Estimate known_by_name(const std::vector<ParameterInfo>& names, Estimate robot, const MotionModel& from,
-                       const Estimate& known) {
-  const std::vector<ParameterInfo> theirs = from.parameters();
-  std::vector<Eigen::Index> here;
-  std::vector<Eigen::Index> there;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto found = std::ranges::find(theirs, names[i].name, &ParameterInfo::name);
-    if (found != theirs.end()) {
-      here.push_back(static_cast<Eigen::Index>(i));
-      there.push_back(found - theirs.begin());
-    }
-  }
-  robot.mean(here) = known.mean(there);
-  robot.covariance(here, Eigen::all).setZero();
-  robot.covariance(Eigen::all, here).setZero();
-  robot.covariance(here, here) = known.covariance(there, there);
-  return robot;
-}
-
-std::vector<ParameterInfo> after_slip(const MotionModel& model) {
-  std::vector<ParameterInfo> names = model.parameters();
-  names.erase(names.begin(), names.begin() + model.slip_size());
-  return names;
-}
-
-/// Segments at steady speeds, by which surfaces are compared before any was driven.
-std::vector<std::pair<InputHistory, Segment>> steady_segments(const ReferenceSpeeds& speeds, double seconds) {
-  std::vector<std::pair<InputHistory, Segment>> all;
-  for (const double v : {0.5, 1.0}) {
-    for (const double omega : {-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0}) {
-      const BodyTwist twist{.v = v * speeds.v, .vy = 0.0, .omega = omega * speeds.omega};
-      const Pose2 end = exp(Eigen::Vector3d(twist.v * seconds, 0.0, twist.omega * seconds));
-      all.emplace_back(InputHistory({-1.0}, {twist}),
-                       Segment{.start = 0.0, .end = seconds, .measured = measured_pose(end)});
-    }
-  }
-  return all;
-}
-
 }  // namespace
-
-SurfaceMemory ModelAverage::completed(const NamedMemory& some, bool same_robot) const {
-  SurfaceMemory all = remember();
-  all.observed = some.memory.observed;
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(std::ssize(places_));
-  for (std::size_t i = 0; i < all.slips.size(); ++i) {
-    const auto named = std::ranges::find(some.bases, filters_[i].model().basis().name());
-    if (named == some.bases.end()) {
-      continue;
-    }
-    const auto place = static_cast<std::size_t>(named - some.bases.begin());
-    SurfaceSlip slip = some.memory.slips.at(place);
-    const SurfaceSlip& own = all.slips[i];
-    if (slip.mean.size() != own.mean.size()) {
-      throw std::invalid_argument("a surface has " + std::to_string(slip.mean.size()) + " terms of the basis '" +
-                                  *named + "' where there are " + std::to_string(own.mean.size()) +
-                                  ": give the settings that it was learned with");
-    }
-    if (!same_robot || slip.robot.size() != own.robot.size()) {
-      slip.robot = own.robot;
-      slip.by_robot = Eigen::MatrixXd::Zero(own.by_robot.rows(), own.by_robot.cols());
-    }
-    slip.prior_std = filters_[i].slip_std_at(slip.speeds);
-    slip.noise_scale = NoiseScale(filters_[i].noise(), slip.noise_scale.value());
-    weights[static_cast<Eigen::Index>(i)] = some.memory.weights[static_cast<Eigen::Index>(place)];
-    all.slips[i] = std::move(slip);
-  }
-  all.weights = weights.sum() > 0.0 ? Eigen::VectorXd(weights / weights.sum())
-                                    : Eigen::VectorXd(filters_.prior().head(weights.size()));
-  return all;
-}
-
-void ModelAverage::know_robot(const MotionModel& known_model, const Estimate& known) {
-  const std::vector<ParameterInfo> names = after_slip(model_);
-  const auto size = std::ssize(names);
-  for (CausalFilter& filter : filters_.keys()) {
-    const Estimate& now = filter.estimate();
-    filter.know_robot(
-        known_by_name(names, {now.mean.tail(size), now.covariance.bottomRightCorner(size, size)}, known_model, known));
-  }
-}
-
-void ModelAverage::begin_on(const SurfaceMemory& surface, double seconds, double segment_length) {
-  filters_ = filters_on(surface, 0.0);
-  const ReferenceSpeeds speeds = surface.slips.back().speeds;
-  speeds_.begin_with(speeds, seconds);
-  for (auto& [inputs, segment] : steady_segments(speeds, segment_length)) {
-    probes_.push_back({inputs, segment, {}, {}});
-  }
-}
 
 /// What one structure remembers is what the others begin with: the slip is the same.
 Surface MotionHypotheses::completed(const KnownSurface& known, std::size_t place) const {
@@ -122,7 +31,7 @@ Surface MotionHypotheses::completed(const KnownSurface& known, std::size_t place
   for (std::size_t i = 0; i < kAverages; ++i) {
     surface.memories[i].reset();
     if (averages[i] != nullptr) {
-      surface.memories[i] = averages[i]->completed(known.memory, i == place);
+      surface.memories[i] = averages[i]->average().completed(known.memory, i == place);
     }
   }
   return surface;
@@ -144,7 +53,7 @@ void MotionHypotheses::begin_with(const KnownBefore& known, double segment_lengt
   }
   const bool limited = model.structure == Structure::Limited;
   if (!limited) {
-    averages[place]->know_robot(model.model, model.estimate);
+    averages[place]->average().know_robot(model.model, model.estimate);
   }
   if (place == kCascaded && !limited && cascaded_) {
     const std::vector<ParameterInfo> names = cascaded_->actuator_model().parameters();
@@ -188,12 +97,12 @@ std::optional<SlipOnSurface> MotionHypotheses::on_surface(const Surface& surface
   if (structure == Structure::Limited && cascaded_ && tried(Structure::Cascaded)) {
     place = kCascaded;  // what is behind limits is what the cascade learns, where there is one
   }
-  const ModelAverage* average = averages_of(*this)[place];
+  const RememberingAverage* average = averages_of(*this)[place];
   const auto& memory = surface.memories[place];
   if (average == nullptr || !memory || structure == Structure::Baseline) {
     return std::nullopt;
   }
-  const SurfaceMemory own = average->remember();
+  const SurfaceMemory own = average->average().remember();
   const auto same_size = [](const SurfaceSlip& a, const SurfaceSlip& b) {
     return a.mean.size() == b.mean.size() && a.robot.size() == b.robot.size();
   };
@@ -201,7 +110,7 @@ std::optional<SlipOnSurface> MotionHypotheses::on_surface(const Surface& surface
     throw std::invalid_argument("the surface is of a learner with other terms");
   }
   SlipOnSurface found{
-      .state = average->state_on(*memory), .memory = {.bases = {}, .memory = *memory}, .prior_speeds = {}};
+      .state = average->average().state_on(*memory), .memory = {.bases = {}, .memory = *memory}, .prior_speeds = {}};
   for (std::size_t i = 0; i < memory->slips.size(); ++i) {
     found.memory.bases.push_back(place == kDirect ? settings_.bases[static_cast<std::size_t>(direct_bases_[i])].name()
                                                   : settings_.bases[i].name());
@@ -215,7 +124,7 @@ std::optional<SlipOnSurface> MotionHypotheses::slip_now(Structure structure) con
   const auto averages = averages_of(*this);
   for (std::size_t i = 0; i < kAverages; ++i) {
     if (averages[i] != nullptr) {
-      here.memories[i] = averages[i]->remember();
+      here.memories[i] = averages[i]->average().remember();
     }
   }
   return on_surface(here, structure);
@@ -236,7 +145,7 @@ void MotionHypotheses::start_run() {
     cascaded_->restart();
   }
   if (settings_.average.surfaces.remember) {
-    for (ModelAverage* average : averages()) {
+    for (RememberingAverage* average : averages()) {
       if (average != nullptr) {
         average->forget_recent();
       }

@@ -57,7 +57,6 @@ void ModelAverage::check_memory(const SurfaceMemory& memory) const {
 }
 
 void ModelAverage::check_loaded(const ModelAverage& made) const {
-  const Eigen::Index size = made.model_.size();
   require(filters_.size() == made.filters_.size() && archive::same(model_, made.model_) && places_ == made.places_ &&
               archive::same(settings_, made.settings_) && are_weights(filters_.weights()),
           "an average is of other bases or settings");
@@ -66,12 +65,16 @@ void ModelAverage::check_loaded(const ModelAverage& made) const {
   }
   require(0 <= change_.segments, "an average has found a change after the last segment");
   require(!learning_ || (learning_->updates.size() < filters_.size()), "an average has learned more than it has");
+}
+
+void RememberingAverage::check_loaded(const RememberingAverage& made) const {
+  average_.check_loaded(made.average_);
   for (const Recent& recent : recent_) {
-    check_memory(recent.memory);
-    check_state(recent.state, size);
+    average_.check_memory(recent.memory);
+    check_state(recent.state, average_.model().size());
   }
   if (parting_) {
-    check_memory(*parting_);
+    average_.check_memory(*parting_);
   }
 }
 
@@ -93,7 +96,7 @@ void SurfaceTrial::check_loaded(const MotionModel& model, std::size_t surfaces) 
 }
 
 void SurfaceBank::check_loaded(const SurfaceBank& made,
-                               const std::array<const ModelAverage*, kAverages>& averages) const {
+                               const std::array<const RememberingAverage*, kAverages>& averages) const {
   require(archive::same(settings_, made.settings_) && (!present_ || *present_ < surfaces_.size()) &&
               leader_ < kAverages && averages[leader_] != nullptr,
           "the bank of surfaces names one that is not there");
@@ -102,13 +105,13 @@ void SurfaceBank::check_loaded(const SurfaceBank& made,
       const auto& memory = surface.memories[i];
       require(!memory || averages[i] != nullptr, "a surface is remembered without an average");
       if (memory) {
-        averages[i]->check_memory(*memory);
+        averages[i]->average().check_memory(*memory);
       }
     }
   }
   require(!held_ || (trial_ && present_), "a surface is doubted that is not driven on");
   if (trial_) {
-    trial_->check_loaded(averages[leader_]->model(), surfaces_.size());
+    trial_->check_loaded(averages[leader_]->average().model(), surfaces_.size());
     const std::size_t count = trial_->candidates().size();
     require(held_ ? count == 2 : count == heard_factors_.size(), "a trial of surfaces has other candidates");
   }

@@ -66,7 +66,32 @@ std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& 
   return places;
 }
 
+std::vector<ParameterInfo> after_slip(const MotionModel& model) {
+  std::vector<ParameterInfo> names = model.parameters();
+  names.erase(names.begin(), names.begin() + model.slip_size());
+  return names;
+}
+
 }  // namespace
+
+Estimate known_by_name(const std::vector<ParameterInfo>& names, Estimate here, const MotionModel& from,
+                       const Estimate& known) {
+  const std::vector<ParameterInfo> theirs = from.parameters();
+  std::vector<Eigen::Index> places;
+  std::vector<Eigen::Index> there;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto found = std::ranges::find(theirs, names[i].name, &ParameterInfo::name);
+    if (found != theirs.end()) {
+      places.push_back(static_cast<Eigen::Index>(i));
+      there.push_back(found - theirs.begin());
+    }
+  }
+  here.mean(places) = known.mean(there);
+  here.covariance(places, Eigen::all).setZero();
+  here.covariance(Eigen::all, places).setZero();
+  here.covariance(places, places) = known.covariance(there, there);
+  return here;
+}
 
 ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, ActuatorParameters learned,
                            const CausalFilterSettings& filter, const ModelAverageSettings& settings)
@@ -119,7 +144,6 @@ void ModelAverage::start(const InputHistory& inputs, const Segment& segment) {
   }
   learning_ = Learning{.inputs = inputs, .segment = segment};
   speeds_.see(inputs, segment);
-  note_recent();
 }
 
 bool ModelAverage::advance() {
@@ -148,7 +172,7 @@ void ModelAverage::update_next_filter() {
 void ModelAverage::reweigh() {
   const std::vector<IekfUpdate>& updates = present(learning_).updates;
   update_ = updates[filters_.heaviest()];
-  look_for_change();
+  change_ = filters_[filters_.heaviest()].branches().change();
   filters_.learn(scores_of(filters_.weights(), updates), settings_.weighting);
   if (change_.alarm) {
     filters_.begin_with(filters_.weights(), 0);  // of a new terrain, few data have spoken
@@ -163,15 +187,6 @@ Eigen::VectorXd ModelAverage::scores_of(const Eigen::VectorXd& weights, std::spa
   }
   const double sum = slipping.sum();
   return common_log_scores(sum > 0.0 ? Eigen::VectorXd(slipping / sum) : weights, updates);
-}
-
-void ModelAverage::look_for_change() {
-  change_ = filters_[filters_.heaviest()].branches().change();
-  if (change_.alarm) {
-    const auto first = std::ssize(recent_) - std::min<std::ptrdiff_t>(change_.segments, std::ssize(recent_));
-    changed_since_ =
-        recent_.empty() ? present(learning_).segment.start : recent_[static_cast<std::size_t>(first)].segment.start;
-  }
 }
 
 void ModelAverage::forget(double fraction) {
@@ -259,6 +274,109 @@ Eigen::VectorXd ModelAverage::variance_ratio() const {
     }
   }
   return ratio;
+}
+
+SurfaceMemory ModelAverage::remember() const {
+  const std::size_t bases = places_.size();
+  std::size_t best = 0;
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(std::ssize(places_));
+  for (std::size_t side = 0; side < sides(); ++side) {
+    const Eigen::VectorXd part = filters_.weights().segment(static_cast<Eigen::Index>(side * bases), weights.size());
+    if (part.sum() > weights.sum()) {
+      best = side;
+      weights = part;
+    }
+  }
+  SurfaceMemory memory{.slips = {}, .weights = weights / weights.sum(), .observed = filters_.observed()};
+  for (std::size_t i = 0; i < bases; ++i) {
+    memory.slips.push_back(filters_[best * bases + i].surface());
+  }
+  return memory;
+}
+
+HypothesisBank<CausalFilter> ModelAverage::filters_on(const SurfaceMemory& surface, double drift) const {
+  HypothesisBank<CausalFilter> filters = filters_.chosen(side_places(0));
+  for (std::size_t i = 0; i < filters.size(); ++i) {
+    filters[i].go_on_with(surface.slips[i], drift);
+  }
+  filters.begin_with(surface.weights, surface.observed);
+  return filters;
+}
+
+AverageState ModelAverage::state_on(const SurfaceMemory& surface, double drift) const {
+  AverageState state = state_of(filters_on(surface, drift).keys(), surface.weights);
+  state.weights = surface.weights;
+  return state;
+}
+
+/// Bases are weighted as on the surfaces that are known.
+SurfaceMemory ModelAverage::new_surface(std::span<const SurfaceMemory> known) const {
+  SurfaceMemory fresh{.slips = {}, .weights = Eigen::VectorXd::Zero(std::ssize(places_))};
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    std::vector<SurfaceSlip> slips;
+    std::ranges::transform(known, std::back_inserter(slips), [&](const SurfaceMemory& each) { return each.slips[i]; });
+    fresh.slips.push_back(filters_[i].new_surface(slips));
+  }
+  for (const SurfaceMemory& each : known) {
+    fresh.weights += each.weights / static_cast<double>(known.size());
+  }
+  return fresh;
+}
+
+void ModelAverage::recall(std::span<const RecalledSurface> known) {
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    std::vector<RecalledSlip> slips;
+    for (const RecalledSurface& each : known) {
+      slips.push_back({.slip = each.memory.slips[i % places_.size()], .probability = each.probability});
+    }
+    filters_[i].recall(slips, settings_.surfaces.drift);
+  }
+}
+
+SurfaceMemory ModelAverage::completed(const NamedMemory& some, bool same_robot) const {
+  SurfaceMemory all = remember();
+  all.observed = some.memory.observed;
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(std::ssize(places_));
+  for (std::size_t i = 0; i < all.slips.size(); ++i) {
+    const auto named = std::ranges::find(some.bases, filters_[i].model().basis().name());
+    if (named == some.bases.end()) {
+      continue;
+    }
+    const auto place = static_cast<std::size_t>(named - some.bases.begin());
+    SurfaceSlip slip = some.memory.slips.at(place);
+    const SurfaceSlip& own = all.slips[i];
+    if (slip.mean.size() != own.mean.size()) {
+      throw std::invalid_argument("a surface has " + std::to_string(slip.mean.size()) + " terms of the basis '" +
+                                  *named + "' where there are " + std::to_string(own.mean.size()) +
+                                  ": give the settings that it was learned with");
+    }
+    if (!same_robot || slip.robot.size() != own.robot.size()) {
+      slip.robot = own.robot;
+      slip.by_robot = Eigen::MatrixXd::Zero(own.by_robot.rows(), own.by_robot.cols());
+    }
+    slip.prior_std = filters_[i].slip_std_at(slip.speeds);
+    slip.noise_scale = NoiseScale(filters_[i].noise(), slip.noise_scale.value());
+    weights[static_cast<Eigen::Index>(i)] = some.memory.weights[static_cast<Eigen::Index>(place)];
+    all.slips[i] = std::move(slip);
+  }
+  all.weights = weights.sum() > 0.0 ? Eigen::VectorXd(weights / weights.sum())
+                                    : Eigen::VectorXd(filters_.prior().head(weights.size()));
+  return all;
+}
+
+void ModelAverage::know_robot(const MotionModel& known_model, const Estimate& known) {
+  const std::vector<ParameterInfo> names = after_slip(model_);
+  const auto size = std::ssize(names);
+  for (CausalFilter& filter : filters_.keys()) {
+    const Estimate& now = filter.estimate();
+    filter.know_robot(
+        known_by_name(names, {now.mean.tail(size), now.covariance.bottomRightCorner(size, size)}, known_model, known));
+  }
+}
+
+void ModelAverage::begin_on(const SurfaceMemory& surface, double seconds) {
+  filters_ = filters_on(surface, 0.0);
+  speeds_.begin_with(surface.slips.back().speeds, seconds);
 }
 
 }  // namespace slipwise

@@ -62,12 +62,12 @@ std::vector<Basis> averaged_bases() {
 
 MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
     : settings_(settings),
-      joint_("auto", settings.bases,
-             {.dynamics = settings.dynamics,
-              .clock_offset = settings.clock_offset && !settings.dynamics,
-              .sensor_extrinsics = settings.sensor_extrinsics,
-              .wheelbase = settings.dynamics ? settings.wheelbase : 0.0},
-             settings.filter, settings.average),
+      joint_(ModelAverage("auto", settings.bases,
+                          {.dynamics = settings.dynamics,
+                           .clock_offset = settings.clock_offset && !settings.dynamics,
+                           .sensor_extrinsics = settings.sensor_extrinsics,
+                           .wheelbase = settings.dynamics ? settings.wheelbase : 0.0},
+                          settings.filter, settings.average)),
       baseline_(settings.filter.noise),
       bank_(settings.average.surfaces) {
   const auto attempt = [&](Structure structure) { tried_.add(structure, kPrior[index(structure)]); };
@@ -75,21 +75,21 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
   if (settings.direct && settings.dynamics) {
     attempt(Structure::Direct);
     direct_bases_ = few_bases(settings.bases);
-    direct_.emplace(
+    direct_.emplace(ModelAverage(
         "auto", chosen(settings.bases, direct_bases_),
         ActuatorParameters{
             .sensor_extrinsics = settings.sensor_extrinsics, .delays = true, .wheelbase = settings.wheelbase},
-        settings.filter, settings.average);
+        settings.filter, settings.average));
   }
   if (settings.baseline) {
     attempt(Structure::Baseline);
   }
   if (settings.cascaded && settings.dynamics) {
-    cascaded_.emplace(
-        ModelAverage("auto", settings.bases,
-                     {.clock_offset = settings.clock_offset, .sensor_extrinsics = settings.sensor_extrinsics},
-                     settings.filter, settings.average),
-        settings.filter, settings.wheelbase);
+    cascaded_.emplace(RememberingAverage(ModelAverage(
+                          "auto", settings.bases,
+                          {.clock_offset = settings.clock_offset, .sensor_extrinsics = settings.sensor_extrinsics},
+                          settings.filter, settings.average)),
+                      settings.filter, settings.wheelbase);
   }
   tried_.normalise();
 }
@@ -131,8 +131,8 @@ bool MotionHypotheses::advance_slip() { return cascaded_ && cascaded_->advance_s
 
 /// What is due soonest comes first.
 bool MotionHypotheses::refit_slice() {
-  return (cascaded_ && cascaded_->refit_slice()) || joint_.refit_slice() ||
-         (tried(Structure::Direct) && direct_ && direct_->refit_slice());
+  return (cascaded_ && cascaded_->refit_slice()) || joint_.average().refit_slice() ||
+         (tried(Structure::Direct) && direct_ && direct_->average().refit_slice());
 }
 
 void MotionHypotheses::learn_actuator(const WheelSegment& segment) {
@@ -142,9 +142,9 @@ void MotionHypotheses::learn_actuator(const WheelSegment& segment) {
 }
 
 void MotionHypotheses::forget(double fraction) {
-  joint_.forget(fraction);
+  joint_.average().forget(fraction);
   if (direct_) {
-    direct_->forget(fraction);
+    direct_->average().forget(fraction);
   }
   if (cascaded_) {
     cascaded_->forget(fraction);
@@ -153,17 +153,17 @@ void MotionHypotheses::forget(double fraction) {
 
 void MotionHypotheses::expect_lasting(const DisturbanceModel& law) {
   const double seconds = correlation_time(law, kUsualCorrelationTime);
-  for (ModelAverage* average : averages_of(*this)) {
+  for (RememberingAverage* average : averages_of(*this)) {
     if (average != nullptr) {
-      average->expect_lasting(seconds);
+      average->average().expect_lasting(seconds);
     }
   }
 }
 
 void MotionHypotheses::expect_change() {
-  for (ModelAverage* average : averages_of(*this)) {
+  for (RememberingAverage* average : averages_of(*this)) {
     if (average != nullptr) {
-      average->expect_change();
+      average->average().expect_change();
     }
   }
 }
@@ -191,21 +191,21 @@ bool MotionHypotheses::advance() {
     return false;
   }
   const Structure structure = to_predict_[predicted_.size()];
-  ModelAverage* average = average_of(structure);
+  RememberingAverage* average = average_of(structure);
   if (average == nullptr) {
     predicted_.push_back(predict(structure));
   } else if (!averaging_) {
     average->start(present(segment_).inputs, present(segment_).segment);
     averaging_ = true;
   } else if (!average->advance()) {
-    predicted_.push_back(learned(*average, structure));
+    predicted_.push_back(learned(average->average(), structure));
     averaging_ = false;
   }
   return true;
 }
 
 /// What learns the segments themselves.
-ModelAverage* MotionHypotheses::average_of(Structure structure) {
+RememberingAverage* MotionHypotheses::average_of(Structure structure) {
   if (structure == Structure::Joint) {
     return &joint_;
   }
@@ -283,9 +283,9 @@ std::shared_ptr<const MotionPosterior> MotionHypotheses::of(Structure structure)
   }
   switch (structure) {
     case Structure::Joint:
-      return posterior_of(joint_, structure);
+      return posterior_of(joint_.average(), structure);
     case Structure::Direct:
-      return posterior_of(present(direct_), structure);
+      return posterior_of(present(direct_).average(), structure);
     case Structure::Cascaded:
       return present(cascaded_).posterior();
     default:

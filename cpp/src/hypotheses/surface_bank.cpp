@@ -61,7 +61,7 @@ void SurfaceBank::keep_present(const Averages& averages, const DisturbanceModel&
   if (!settings_.remember) {
     return;
   }
-  for_each(averages, [](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(kNow); });
+  for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(kNow); });
   leave_present(averages, law);
 }
 
@@ -78,9 +78,9 @@ void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel
   }
   Surface& surface = surfaces_[place];
   flush(surface);
-  for_each(averages, [&](std::size_t i, ModelAverage& average) {
+  for_each(averages, [&](std::size_t i, RememberingAverage& average) {
     const auto& parting = average.parting();
-    surface.memories[i] = parting ? *parting : average.remember();
+    surface.memories[i] = parting ? *parting : average.average().remember();
   });
   merge_confounded(averages, law, place);
 }
@@ -89,7 +89,7 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
   if (!settings_.merge) {
     return;
   }
-  const ModelAverage& leader = *averages[leader_];
+  const RememberingAverage& leader = *averages[leader_];
   const double told_apart = -std::log(settings_.false_alarm);
   const auto known = [&](const Surface& each) {
     return std::cmp_greater_equal(each.segments, settings_.fewest) && each.memories[leader_];
@@ -166,12 +166,12 @@ void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, st
   weigh_by_label(candidates);
   heard_in_trial_.clear();
   heard_factors_.assign(candidates.size(), 0.0);
-  for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(since); });
-  const ModelAverage& leader = *averages[leader_];
+  for_each(averages, [&](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(since); });
+  const RememberingAverage& leader = *averages[leader_];
   std::vector<SurfaceMemory> known;
   for (const Surface& surface : surfaces_) {  // an average that began later has not learned the older ones
     const auto& memory = surface.memories[leader_];
-    known.push_back(memory ? *memory : leader.remember());
+    known.push_back(memory ? *memory : leader.average().remember());
   }
   trial_.emplace(std::move(candidates), known, leader, law, since);
 }
@@ -179,7 +179,7 @@ void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, st
 /// Slip may be that of the candidates that are known. The present one is what goes on.
 void SurfaceBank::recall(const Averages& averages) const {
   const SurfaceTrial& trial = slipwise::present(trial_);
-  for_each(averages, [&](std::size_t i, ModelAverage& average) {
+  for_each(averages, [&](std::size_t i, RememberingAverage& average) {
     std::vector<RecalledSurface> known;
     for (std::size_t k = 0; k < trial.candidates().size(); ++k) {
       const SurfaceCandidate& each = trial.candidates()[k];
@@ -188,7 +188,7 @@ void SurfaceBank::recall(const Averages& averages) const {
                          .probability = trial.probabilities()[static_cast<Eigen::Index>(k)]});
       }
     }
-    average.recall(known);
+    average.average().recall(known);
   });
 }
 
@@ -230,7 +230,7 @@ void SurfaceBank::suspect(const Averages& averages, const DisturbanceModel& law)
   if (!surfaces_.empty()) {  // what it parts from is what was known before the suspicion
     open(averages, law, candidates_of_change(surfaces_.size(), present_, doubted, settings_), kNow);
   }
-  for_each(averages, [](std::size_t /*i*/, ModelAverage& average) { average.expect_change(); });
+  for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.average().expect_change(); });
   if (trial_) {
     recall(averages);
   }
@@ -261,7 +261,7 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
     open(averages, law, candidates_of_change(surfaces_.size(), present_, doubted, settings_), *changed_since);
     return false;
   }
-  for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(*changed_since); });
+  for_each(averages, [&](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(*changed_since); });
   leave_present(averages, law);
   enter_new();
   return false;
@@ -344,7 +344,7 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
     leave_present(averages, law);
   }
   if (taken.kind != Kind::Present) {  // what filters find that began before is no change of what is taken
-    for_each(averages, [](std::size_t /*i*/, ModelAverage& average) { average.forget_recent(); });
+    for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.forget_recent(); });
   }
   hear_on(taken.kind);
   take(taken, judge_label(taken, recalled, decision.sure), probability, segments);

@@ -42,34 +42,34 @@ std::vector<SurfaceCandidate> candidates_of_change(std::size_t surfaces, std::op
 }
 
 SurfaceTrial::SurfaceTrial(std::vector<SurfaceCandidate> candidates, std::span<const SurfaceMemory> known,
-                           const ModelAverage& average, const DisturbanceModel& law, double since)
+                           const RememberingAverage& average, const DisturbanceModel& law, double since)
     : candidates_(std::move(candidates)) {
   const auto& recent = average.recent();
   const std::size_t first = average.recent_since(since);
-  const double rate = average.surface_settings().learning_rate;
+  const double rate = average.settings().learning_rate;
   segments_ = static_cast<int>(recent.size() - first);
   last_ = recent.empty() ? 0.0 : recent.back().segment.end;
   for (const SurfaceCandidate& candidate : candidates_) {
-    SurfaceEvidence evidence(average.model(), average.posterior_on(candidate, known, since), law);
+    SurfaceEvidence evidence(average.average().model(), average.posterior_on(candidate, known, since), law);
     double score = std::log(candidate.prior);
     for (std::size_t k = first; k < recent.size(); ++k) {
-      score += rate * evidence.add(average.model(), recent[k].inputs, recent[k].segment);
+      score += rate * evidence.add(average.average().model(), recent[k].inputs, recent[k].segment);
     }
     evidence_.add(std::move(evidence), candidate.prior, score);
   }
   evidence_.weigh(Eigen::VectorXd::Zero(std::ssize(candidates_)));
 }
 
-void SurfaceTrial::follow(const ModelAverage& average) {
+void SurfaceTrial::follow(const RememberingAverage& average) {
   if (average.recent().empty() || average.recent().back().segment.end == last_) {
     return;
   }
-  const ModelAverage::Recent& now = average.recent().back();
-  const double rate = average.surface_settings().learning_rate;
+  const RememberingAverage::Recent& now = average.recent().back();
+  const double rate = average.settings().learning_rate;
   last_ = now.segment.end;
   Eigen::VectorXd scores(probabilities().size());
   for (std::size_t i = 0; i < evidence_.size(); ++i) {
-    scores[static_cast<Eigen::Index>(i)] = rate * evidence_[i].add(average.model(), now.inputs, now.segment);
+    scores[static_cast<Eigen::Index>(i)] = rate * evidence_[i].add(average.average().model(), now.inputs, now.segment);
   }
   evidence_.weigh(scores);
   ++segments_;

@@ -7,27 +7,29 @@
 #include <vector>
 
 #include "simulated_drive.hpp"
-#include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/hypotheses/remembering_average.hpp"
 
 namespace slipwise::tests {
 
 inline const DisturbanceModel kWhiteSlip{.candidates = {{0.0, 0.0, 1.0}}, .weights = Eigen::VectorXd::Ones(1)};
 
-inline ModelAverage remembering_average() {
+inline RememberingAverage remembering_average() {
   ModelAverageSettings settings;
   settings.surfaces.remember = true;
-  return {"auto", {{"none", {}, {}, {}}, named_basis("edd-2")}, {}, {}, settings};
+  return RememberingAverage({"auto", {{"none", {}, {}, {}}, named_basis("edd-2")}, {}, {}, settings});
 }
 
 /// Learns some segments of 2 s on a surface that takes a part of the turns; `learned` is called after each.
 inline void drive_on_surface(
-    ModelAverage& average, double yaw_slip, std::uint64_t seed, std::size_t windows = 40,
+    RememberingAverage& average, double yaw_slip, std::uint64_t seed, std::size_t windows = 40,
     const std::function<void()>& learned = [] {}) {
   const MotionNoise noise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
   const auto drive = simulate_drive({named_basis("edd-2"), {}}, Eigen::Vector2d(-0.05, yaw_slip),
                                     {.seed = seed, .windows = windows, .window = 2.0, .noise = noise});
   for (const Segment& segment : drive.segments) {
-    average.learn(drive.inputs, segment);
+    average.start(drive.inputs, segment);
+    while (average.advance()) {
+    }
     learned();
   }
 }
@@ -36,9 +38,9 @@ inline void drive_on_surface(
 inline std::vector<SurfaceMemory> surface_memories(const std::vector<double>& yaw_slips) {
   std::vector<SurfaceMemory> all;
   for (const double yaw_slip : yaw_slips) {
-    ModelAverage average = remembering_average();
+    RememberingAverage average = remembering_average();
     drive_on_surface(average, yaw_slip, 60 + all.size());
-    all.push_back(average.remember());
+    all.push_back(average.average().remember());
   }
   return all;
 }

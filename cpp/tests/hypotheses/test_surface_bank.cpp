@@ -20,7 +20,7 @@ using tests::kWhiteSlip;
 
 /// Surfaces of these yaw slips, each driven for 40 segments, and an average that has driven.
 struct Known {
-  ModelAverage average = tests::remembering_average();
+  RememberingAverage average = tests::remembering_average();
   std::vector<Surface> surfaces = {};
 
   explicit Known(const std::vector<std::pair<std::string, double>>& named) {
@@ -104,15 +104,15 @@ TEST_CASE(
 TEST_CASE("surfaces that come back are predicted from the first segments on, and one that does not costs nothing") {
   for (const double yaw_slip : {-0.5, -0.1}) {
     Known known({{"hall", -0.1}, {"sand", -0.5}});
-    ModelAverage goes_on = known.average;
+    RememberingAverage goes_on = known.average;
     SurfaceBank bank(remembering());
     bank.know(known.surfaces, {});
     bank.start_drive(known.averages(), kWhiteSlip, {});
     tests::drive_on_surface(known.average, yaw_slip, 78, 3);
     tests::drive_on_surface(goes_on, yaw_slip, 78, 3);
-    const double recalled = std::abs(known.average.state().estimate.mean[1] - yaw_slip);
+    const double recalled = std::abs(known.average.average().state().estimate.mean[1] - yaw_slip);
     CHECK(recalled < 0.03);
-    CHECK(recalled < std::abs(goes_on.state().estimate.mean[1] - yaw_slip) + 0.01);
+    CHECK(recalled < std::abs(goes_on.average().state().estimate.mean[1] - yaw_slip) + 0.01);
   }
 }
 

@@ -35,7 +35,7 @@ TEST_CASE("before any segment speaks, candidates have their priors, and log fact
 TEST_CASE("the surface that is driven on wins, known or new, and each segment speaks once") {
   const auto known = surface_memories({-0.1, -0.5});
   for (const auto& [slip, winner] : {std::pair{-0.1, 0}, {-0.5, 1}, {0.4, 2}}) {
-    ModelAverage average = remembering_average();
+    RememberingAverage average = remembering_average();
     SurfaceTrial trial(kAny, known, average, kWhiteSlip, kNow);
     drive_on_surface(average, slip, 71, 6, [&] {
       trial.follow(average);
@@ -48,7 +48,7 @@ TEST_CASE("the surface that is driven on wins, known or new, and each segment sp
 
 TEST_CASE("surfaces are as far apart as their segments would tell, in whichever order, and one is not from itself") {
   const auto known = surface_memories({-0.1, -0.13, -0.5});
-  ModelAverage average = remembering_average();
+  RememberingAverage average = remembering_average();
   CHECK(average.apart(known[0], known[2], kWhiteSlip) == 0.0);  // nothing was driven that could tell
   drive_on_surface(average, -0.1, 72);
   CHECK(average.apart(known[0], known[0], kWhiteSlip) == 0.0);
@@ -58,16 +58,16 @@ TEST_CASE("surfaces are as far apart as their segments would tell, in whichever 
 }
 
 TEST_CASE("what was known at parting is without the segments on another surface") {
-  ModelAverage average = remembering_average();
+  RememberingAverage average = remembering_average();
   drive_on_surface(average, -0.1, 73, 20);
-  const SurfaceMemory before = average.remember();
+  const SurfaceMemory before = average.average().remember();
   average.forget_recent();
   average.mark_parting(kNow);
   CHECK(present(average.parting()).slips.back().mean == before.slips.back().mean);
   drive_on_surface(average, -0.5, 74, 3);
   average.mark_parting(0.0);  // of the drive, which begins at 0.5 s
   CHECK(present(average.parting()).slips.back().mean == before.slips.back().mean);
-  CHECK(average.remember().slips.back().mean != before.slips.back().mean);
+  CHECK(average.average().remember().slips.back().mean != before.slips.back().mean);
 }
 
 }  // namespace

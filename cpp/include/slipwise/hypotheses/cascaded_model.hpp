@@ -9,7 +9,7 @@
 #include "slipwise/filter/motion_posterior.hpp"
 #include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/hypotheses/estimate_history.hpp"
-#include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/hypotheses/remembering_average.hpp"
 #include "slipwise/identify/actuator_filter.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
@@ -30,14 +30,14 @@ class CascadedModel {
  public:
   CascadedModel();
   /// `slip` has learned nothing yet; its inputs are wheel speeds. With a wheelbase [m] the commands steer.
-  CascadedModel(ModelAverage slip, const CausalFilterSettings& settings, double wheelbase = 0.0);
+  CascadedModel(RememberingAverage slip, const CausalFilterSettings& settings, double wheelbase = 0.0);
 
   /// Begins to learn the slip from a segment whose inputs are wheel speeds; `advance_slip` does a piece of it, and says
   /// whether there is more.
   void start_slip(const DrivenSegment& segment);
   bool advance_slip();
   /// Does a bounded slice of the refits; whether there was any to do.
-  bool refit_slice() { return actuator_.refit_slice() || slip_.refit_slice(); }
+  bool refit_slice() { return actuator_.refit_slice() || slip_.average().refit_slice(); }
   /// Learns the actuator model from commands and wheel speeds.
   void learn_actuator(const WheelSegment& segment);
   /// Begins with an actuator that was learned before.
@@ -57,10 +57,10 @@ class CascadedModel {
   /// Whether a refit of the slip took effect since the last `refresh` but one.
   bool refitted() const { return refitted_; }
   /// Gives the slip parameters `fraction` of their prior variance back.
-  void forget(double fraction) { slip_.forget(fraction); }
+  void forget(double fraction) { slip_.average().forget(fraction); }
   /// What learns the slip.
-  ModelAverage& slip() { return slip_; }
-  const ModelAverage& slip() const { return slip_; }
+  RememberingAverage& slip() { return slip_; }
+  const RememberingAverage& slip() const { return slip_; }
 
   /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become.
   void check_loaded(const CascadedModel& made) const;
@@ -79,7 +79,7 @@ class CascadedModel {
 
   MotionModel model_;
   MotionNoise noise_;
-  ModelAverage slip_;
+  RememberingAverage slip_;
   ActuatorFilter actuator_;
   PredictiveScore score_;
   std::vector<Eigen::Index> places_of_slip_;  ///< of its parameters among the model's

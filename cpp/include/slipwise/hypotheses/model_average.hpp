@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
-#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,7 +14,6 @@
 #include "slipwise/filter/causal_filter.hpp"
 #include "slipwise/filter/driven_speeds.hpp"
 #include "slipwise/filter/hypothesis_bank.hpp"
-#include "slipwise/hypotheses/surface_evidence.hpp"
 #include "slipwise/hypotheses/surface_memory.hpp"
 
 namespace slipwise {
@@ -36,19 +34,15 @@ struct AverageState {
   Eigen::VectorXd weights;  ///< one per model, they sum to 1
 };
 
+/// Those parameters that a model knows by name; others keep what `here` has of `names`.
+Estimate known_by_name(const std::vector<ParameterInfo>& names, Estimate here, const MotionModel& from,
+                       const Estimate& known);
+
 /// Runs one causal filter per basis; with a force on the robot two, of a force that comes and goes and of one that
 /// stays. Slip is linear in its parameters, so that the weighted mean of the models is again a model of the same kind:
 /// the mean parameters over the union of the terms, with the spread in the covariance.
 class ModelAverage {
  public:
-  /// One of the last segments, and what was known before it.
-  struct Recent {
-    InputHistory inputs;
-    Segment segment;
-    SurfaceMemory memory;
-    AverageState state;
-  };
-
   ModelAverage();
   /// \throws std::invalid_argument when there is no basis.
   ModelAverage(std::string name, const std::vector<Basis>& bases, ActuatorParameters learned,
@@ -67,6 +61,8 @@ class ModelAverage {
 
   /// One bounded piece: the update of one filter. False when the segment is learned.
   bool advance();
+  /// The segment that is being learned; null between segments.
+  const Segment* learning() const { return learning_ ? &learning_->segment : nullptr; }
   /// Of the last segment that was learned: the update of the model that weighted most before.
   const IekfUpdate& update() const { return update_; }
 
@@ -86,26 +82,10 @@ class ModelAverage {
   SurfaceMemory remember() const;
   /// Slip may have become that of a surface just now, with this probability each; together less than 1.
   void recall(std::span<const RecalledSurface> known);
-  /// The estimate of a surface at its parting, without its last segments that were on another.
-  const std::optional<SurfaceMemory>& parting() const { return parting_; }
-  /// What was known before the segments from `since` [s] on.
-  void mark_parting(double since);
-  /// Start of the segments since a change of terrain [s], where one was found since the last call.
-  std::optional<double> take_change() { return std::exchange(changed_since_, std::nullopt); }
-  /// Forgets which segments were the last: another run begins, or another surface.
-  void forget_recent() { recent_.clear(); }
-  /// Log odds that a trial would give one of two surfaces against the other, were it the one and driven as of late.
-  double apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const;
   /// The estimate while a surface is driven on, with so much `drift` since it was left.
   AverageState state_on(const SurfaceMemory& surface, double drift = 0.0) const;
-  /// What is known of a candidate before the segments from `since` [s] on; `known` are the memories of the surfaces.
-  SurfacePosterior posterior_on(const SurfaceCandidate& candidate, std::span<const SurfaceMemory> known,
-                                double since) const;
-  /// The last segments of the run, where surfaces are remembered.
-  const std::deque<Recent>& recent() const { return recent_; }
-  /// The place of the first of them from `since` [s] on.
-  std::size_t recent_since(double since) const;
-  const SurfaceSettings& surface_settings() const { return settings_.surfaces; }
+  /// A surface that was never driven, where these are `known`.
+  SurfaceMemory new_surface(std::span<const SurfaceMemory> known) const;
   /// The memory of all bases from one of some: of the others, the present estimate is remembered. `same_robot` says
   /// whether it goes with the parameters of this robot, as this average has them.
   /// \throws std::invalid_argument when a basis has another number of terms there.
@@ -113,10 +93,13 @@ class ModelAverage {
   /// Begins with a robot that was learned before: those of its parameters that `known` has, a model's posterior.
   void know_robot(const MotionModel& known_model, const Estimate& known);
   /// Begins on a surface that is remembered, as if it had just been left after so many `seconds` of driving.
-  void begin_on(const SurfaceMemory& surface, double seconds, double segment_length);
+  void begin_on(const SurfaceMemory& surface, double seconds);
 
   const MotionModel& model() const { return model_; }
+  const ModelAverageSettings& settings() const { return settings_; }
   AverageState state() const;
+  /// Model of the noise, whose variances the learned scale multiplies.
+  const MotionNoise& noise() const { return filters_[0].noise().shape; }
   /// Whether slip jumped before the last segment or one of those just before it, as the model says that weighted most.
   const SlipChange& change() const { return change_; }
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
@@ -131,7 +114,7 @@ class ModelAverage {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.filters_, self.places_, self.settings_, self.speeds_, self.change_, self.learning_);
-    a(self.update_, self.recent_, self.probes_, self.parting_, self.changed_since_);
+    a(self.update_);
     self.check_sizes();
   }
 
@@ -148,17 +131,13 @@ class ModelAverage {
   Eigen::VectorXd scores_of(const Eigen::VectorXd& weights, std::span<const IekfUpdate> updates) const;
   void update_next_filter();
   void reweigh();
-  void look_for_change();
   std::vector<std::size_t> side_places(std::size_t side) const;
   Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
   AverageState state_of(std::span<const CausalFilter> filters, const Eigen::VectorXd& weights) const;
   /// Filters of each basis: laws of a force.
   std::size_t sides() const { return filters_.size() / places_.size(); }
-  void note_recent();
   HypothesisBank<CausalFilter> filters_on(const SurfaceMemory& surface, double drift) const;
-  SurfaceMemory new_surface(std::span<const SurfaceMemory> known, const SurfaceMemory& present) const;
-  SurfacePosterior posterior_of(const AverageState& state) const;
 
   MotionModel model_;
   HypothesisBank<CausalFilter> filters_;           ///< one per basis, for each law of a force
@@ -168,10 +147,6 @@ class ModelAverage {
   SlipChange change_;
   std::optional<Learning> learning_;
   IekfUpdate update_ = {};
-  std::deque<Recent> recent_;
-  std::deque<Recent> probes_;  ///< some of those before, by which surfaces are compared
-  std::optional<SurfaceMemory> parting_;
-  std::optional<double> changed_since_;  ///< [s], of a change that nobody took
 };
 
 }  // namespace slipwise

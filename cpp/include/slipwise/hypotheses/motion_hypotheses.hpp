@@ -16,6 +16,7 @@
 #include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/hypotheses/cascaded_model.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/hypotheses/remembering_average.hpp"
 #include "slipwise/hypotheses/surface_bank.hpp"
 #include "slipwise/hypotheses/surface_probability.hpp"
 #include "slipwise/segment/driven_segment.hpp"
@@ -154,14 +155,14 @@ class MotionHypotheses {
   /// Of the structures that may come to be tried.
   template <class Self>
   static auto averages_of(Self& self) {
-    using Average = std::conditional_t<std::is_const_v<Self>, const ModelAverage, ModelAverage>;
+    using Average = std::conditional_t<std::is_const_v<Self>, const RememberingAverage, RememberingAverage>;
     return std::array<Average*, kAverages>{&self.joint_, self.direct_ ? &*self.direct_ : nullptr,
                                            self.cascaded_ ? &self.cascaded_->slip() : nullptr};
   }
   Averages averages();  ///< of those that are tried
   std::size_t leader() const;
   ScoredSegment predict(Structure structure);
-  ModelAverage* average_of(Structure structure);
+  RememberingAverage* average_of(Structure structure);
   ScoredSegment learned(const ModelAverage& average, Structure structure);
   Surface completed(const KnownSurface& known, std::size_t place) const;
   void update_weights();
@@ -169,8 +170,8 @@ class MotionHypotheses {
   std::shared_ptr<const MotionPosterior> posterior_of(const ModelAverage& average, Structure structure) const;
 
   HypothesisSettings settings_;
-  ModelAverage joint_;
-  std::optional<ModelAverage> direct_;
+  RememberingAverage joint_;
+  std::optional<RememberingAverage> direct_;
   std::vector<Eigen::Index> direct_bases_;  ///< their places among all bases
   std::optional<CascadedModel> cascaded_;
   PredictiveScore baseline_;

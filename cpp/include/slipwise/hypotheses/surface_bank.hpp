@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "slipwise/filter/driven_speeds.hpp"
-#include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/hypotheses/remembering_average.hpp"
 #include "slipwise/hypotheses/surface.hpp"
 #include "slipwise/hypotheses/surface_classes.hpp"
 #include "slipwise/hypotheses/surface_trial.hpp"
 
 namespace slipwise {
 
-using Averages = std::array<ModelAverage*, kAverages>;
+using Averages = std::array<RememberingAverage*, kAverages>;
 
 /// Facts about a drive's start.
 struct DriveStart {
@@ -85,7 +85,7 @@ class SurfaceBank {
 
   /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become
   /// beside these averages.
-  void check_loaded(const SurfaceBank& made, const std::array<const ModelAverage*, kAverages>& averages) const;
+  void check_loaded(const SurfaceBank& made, const std::array<const RememberingAverage*, kAverages>& averages) const;
 
   /// Names what is saved.
   template <class Self, class Archive>

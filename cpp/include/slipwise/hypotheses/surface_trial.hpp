@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "slipwise/filter/hypothesis_bank.hpp"
-#include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/hypotheses/remembering_average.hpp"
 #include "slipwise/hypotheses/surface_evidence.hpp"
 #include "slipwise/hypotheses/surface_memory.hpp"
 
@@ -37,10 +37,10 @@ class SurfaceTrial {
   SurfaceTrial() = default;
   /// `known` are the memories that `average` has of the surfaces. Its segments from `since` [s] on speak first.
   SurfaceTrial(std::vector<SurfaceCandidate> candidates, std::span<const SurfaceMemory> known,
-               const ModelAverage& average, const DisturbanceModel& law, double since);
+               const RememberingAverage& average, const DisturbanceModel& law, double since);
 
   /// Takes in the last segment of the average, once.
-  void follow(const ModelAverage& average);
+  void follow(const RememberingAverage& average);
   /// Weights the candidates from outside: log factors of their odds, which count from now on.
   void weigh(const Eigen::VectorXd& log_factors) { evidence_.weigh(log_factors); }
 
