@@ -161,29 +161,10 @@ void MotionHypotheses::start_drive(const DisturbanceModel& law, const DriveStart
   }
 }
 
-void MotionHypotheses::cue_surface(const DisturbanceModel& law, const std::string& label) {
-  bank_.cue(averages(), law, label);
-}
-
-void MotionHypotheses::hear_terrain(const DisturbanceModel& law, const TerrainAnswer& answer) {
-  bank_.hear(averages(), law, answer);
-}
-
-bool MotionHypotheses::consider_surfaces(const DisturbanceModel& law) {
-  return bank_.consider(averages(), leader(), law);
-}
-
 SurfaceBank MotionHypotheses::surfaces_now(const DisturbanceModel& law) const {
   MotionHypotheses now = *this;
   now.bank_.keep_present(now.averages(), law);
   return now.bank_;
-}
-
-std::vector<SurfaceProbability> MotionHypotheses::probable_surfaces() const {
-  if (!settings_.average.surfaces.remember) {
-    return {};
-  }
-  return surface_probabilities(bank_);
 }
 
 }  // namespace slipwise

@@ -97,10 +97,11 @@ void SurfaceTrial::check_loaded(const MotionModel& model, std::size_t surfaces) 
 
 void SurfaceBank::check_loaded(const SurfaceBank& made,
                                const std::array<const RememberingAverage*, kAverages>& averages) const {
-  require(archive::same(settings_, made.settings_) && (!present_ || *present_ < surfaces_.size()) &&
-              leader_ < kAverages && averages[leader_] != nullptr,
+  require(archive::same(settings_, made.settings_) &&
+              (!surfaces_.present() || *surfaces_.present() < surfaces_.size()) && leader_ < kAverages &&
+              averages[leader_] != nullptr,
           "the bank of surfaces names one that is not there");
-  for (const Surface& surface : surfaces_) {
+  for (const Surface& surface : surfaces_.all()) {
     for (std::size_t i = 0; i < kAverages; ++i) {
       const auto& memory = surface.memories[i];
       require(!memory || averages[i] != nullptr, "a surface is remembered without an average");
@@ -109,7 +110,7 @@ void SurfaceBank::check_loaded(const SurfaceBank& made,
       }
     }
   }
-  require(!held_ || (trial_ && present_), "a surface is doubted that is not driven on");
+  require(!held_ || (trial_ && surfaces_.present()), "a surface is doubted that is not driven on");
   if (trial_) {
     trial_->check_loaded(averages[leader_]->average().model(), surfaces_.size());
     const std::size_t count = trial_->candidates().size();

@@ -15,7 +15,6 @@ namespace {
 using Kind = SurfaceCandidate::Kind;
 
 constexpr double kNow = std::numeric_limits<double>::infinity();  // no segment speaks yet
-constexpr std::size_t kMostEvents = 1000;
 
 template <class Use>
 void for_each(const Averages& averages, const Use& use) {
@@ -29,8 +28,6 @@ void for_each(const Averages& averages, const Use& use) {
 }  // namespace
 
 SurfaceBank::SurfaceBank(const SurfaceSettings& settings) : settings_(settings) {}
-
-std::vector<SurfaceEvent> SurfaceBank::take_events() { return std::exchange(events_, {}); }
 
 void SurfaceBank::see(const InputHistory& inputs, const Segment& segment) {
   if (!settings_.remember) {
@@ -67,22 +64,17 @@ void SurfaceBank::keep_present(const Averages& averages, const DisturbanceModel&
 
 /// What was known of the present surface at parting is remembered.
 void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel& law) {
-  if (!present_ && std::cmp_less(segments_, settings_.fewest)) {
+  if (!surfaces_.present() && std::cmp_less(segments_, settings_.fewest)) {
     return;
   }
-  const std::size_t place = present_ ? *present_ : surfaces_.size();
-  if (!present_) {
-    surfaces_.push_back({.name = new_name(), .visits = 1, .used = ++clock_});
-    present_ = place;
-    events_.push_back({.kind = SurfaceEvent::Kind::Opened, .name = surfaces_.back().name});
-  }
-  Surface& surface = surfaces_[place];
+  Surface& surface =
+      surfaces_.present() ? surfaces_[*surfaces_.present()] : surfaces_.enter(std::exchange(wanted_, {}));
   flush(surface);
   for_each(averages, [&](std::size_t i, RememberingAverage& average) {
     const auto& parting = average.parting();
     surface.memories[i] = parting ? *parting : average.average().remember();
   });
-  merge_confounded(averages, law, place);
+  merge_confounded(averages, law, slipwise::present(surfaces_.present()));
 }
 
 void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceModel& law, std::size_t place) {
@@ -98,40 +90,20 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
     const Surface& own = surfaces_[place];
     const Surface& other = surfaces_[i];
     // While driving, a label says that they are two; names in two files were never compared.
-    const bool named_apart = present_ && !numbered(own.name) && !numbered(other.name);
+    const bool named_apart =
+        surfaces_.present() && !SurfaceList::numbered(own.name) && !SurfaceList::numbered(other.name);
     if (i != place && !named_apart && known(own) && known(other) &&
         leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) <=
             told_apart) {
-      merge(std::min(i, place), std::max(i, place));
+      surfaces_.merge(std::min(i, place), std::max(i, place));
       return;
     }
   }
 }
 
-/// The older one keeps its name, unless only the newer one has a name of its own.
-void SurfaceBank::merge(std::size_t older_place, std::size_t newer_place) {
-  Surface& older = surfaces_[older_place];
-  Surface& newer = surfaces_[newer_place];
-  if (numbered(older.name) && !numbered(newer.name)) {
-    std::swap(older.name, newer.name);
-  }
-  events_.push_back({.kind = SurfaceEvent::Kind::Merged, .name = older.name, .other = newer.name});
-  take_in(older, newer);
-  surfaces_.erase(surfaces_.begin() + static_cast<std::ptrdiff_t>(newer_place));
-  if (present_ && *present_ == newer_place) {
-    present_ = older_place;
-  } else if (present_ && *present_ > newer_place) {
-    --*present_;
-  }
-}
-
 void SurfaceBank::know(std::vector<Surface> surfaces, const LabelCounts& labels) {
-  surfaces_ = std::move(surfaces);
+  surfaces_.know(std::move(surfaces));
   labels_ = labels;
-  clock_ = surfaces_.size();
-  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    surfaces_[i].used = i + 1;
-  }
 }
 
 std::vector<std::string> SurfaceBank::add(const Averages& averages, const DisturbanceModel& law,
@@ -139,26 +111,11 @@ std::vector<std::string> SurfaceBank::add(const Averages& averages, const Distur
   leader_ = trial_ ? leader_ : leader;
   std::vector<std::string> names;
   for (Surface& other : others) {
-    const std::string wanted = other.name;
-    for (int count = 2; taken(other.name); ++count) {
-      other.name = wanted + " (" + std::to_string(count) + ")";
-    }
-    other.used = ++clock_;
-    surfaces_.push_back(std::move(other));
-    names.push_back(surfaces_.back().name);
+    names.push_back(surfaces_.add(std::move(other)));
     merge_confounded(averages, law, surfaces_.size() - 1);
   }
-  drop_least_used(settings_.most);
+  surfaces_.drop_least_used(settings_.most);
   return names;
-}
-
-/// Never the present one.
-void SurfaceBank::drop(std::size_t place) {
-  events_.push_back({.kind = SurfaceEvent::Kind::Dropped, .name = surfaces_[place].name});
-  surfaces_.erase(surfaces_.begin() + static_cast<std::ptrdiff_t>(place));
-  if (present_ && *present_ > place) {
-    --*present_;
-  }
 }
 
 void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
@@ -169,7 +126,7 @@ void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, st
   for_each(averages, [&](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(since); });
   const RememberingAverage& leader = *averages[leader_];
   std::vector<SurfaceMemory> known;
-  for (const Surface& surface : surfaces_) {  // an average that began later has not learned the older ones
+  for (const Surface& surface : surfaces_.all()) {  // an average that began later has not learned the older ones
     const auto& memory = surface.memories[leader_];
     known.push_back(memory ? *memory : leader.average().remember());
   }
@@ -183,7 +140,7 @@ void SurfaceBank::recall(const Averages& averages) const {
     std::vector<RecalledSurface> known;
     for (std::size_t k = 0; k < trial.candidates().size(); ++k) {
       const SurfaceCandidate& each = trial.candidates()[k];
-      if (each.kind == Kind::Known && each.place != present_ && surfaces_[each.place].memories[i]) {
+      if (each.kind == Kind::Known && each.place != surfaces_.present() && surfaces_[each.place].memories[i]) {
         known.push_back({.memory = *surfaces_[each.place].memories[i],
                          .probability = trial.probabilities()[static_cast<Eigen::Index>(k)]});
       }
@@ -213,13 +170,13 @@ void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& 
   keep_present(averages, law);
   date_ = start.date;
   label_ = start.label;
-  wanted_ = surfaces_.empty() ? label_ : "";
+  wanted_ = surfaces_.size() == 0 ? label_ : "";
   heard_.clear();
   doubted_for_.clear();
-  if (!surfaces_.empty()) {
+  if (surfaces_.size() > 0) {
     open(averages, law, candidates_of_start(surfaces_.size(), settings_), kNow);
     recall(averages);
-    present_.reset();
+    surfaces_.leave();
   }
 }
 
@@ -227,8 +184,8 @@ void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& 
 void SurfaceBank::suspect(const Averages& averages, const DisturbanceModel& law) {
   const bool doubted = held_;
   let_go();
-  if (!surfaces_.empty()) {  // what it parts from is what was known before the suspicion
-    open(averages, law, candidates_of_change(surfaces_.size(), present_, doubted, settings_), kNow);
+  if (surfaces_.size() > 0) {  // what it parts from is what was known before the suspicion
+    open(averages, law, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_), kNow);
   }
   for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.average().expect_change(); });
   if (trial_) {
@@ -256,9 +213,10 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
   if (!changed_since) {
     return false;
   }
-  if (surfaces_.size() > (present_ ? 1 : 0)) {
+  if (surfaces_.size() > (surfaces_.present() ? 1 : 0)) {
     label_.clear();
-    open(averages, law, candidates_of_change(surfaces_.size(), present_, doubted, settings_), *changed_since);
+    open(averages, law, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_),
+         *changed_since);
     return false;
   }
   for_each(averages, [&](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(*changed_since); });
@@ -273,9 +231,9 @@ bool SurfaceBank::doubt() {
   const double another = trial.probabilities()[1];
   const int segments = trial.segments();
   if (another >= 1.0 - settings_.false_alarm) {
-    --surfaces_[slipwise::present(present_)].visits;
+    --surfaces_[slipwise::present(surfaces_.present())].visits;
     let_go();
-    wanted_ = !label_.empty() && !taken(label_) ? label_ : "";
+    wanted_ = !label_.empty() && !surfaces_.taken(label_) ? label_ : "";
     take({.kind = Kind::New}, "", another, segments);
     return true;
   }
@@ -295,20 +253,8 @@ void SurfaceBank::let_go() {
 
 /// One that has no entry yet gets one when it is left.
 void SurfaceBank::enter_new() {
-  present_.reset();
   doubted_for_.clear();
-  ++clock_;
-  drop_least_used(settings_.most - 1);
-}
-
-/// Until at most so many are left.
-void SurfaceBank::drop_least_used(std::size_t most) {
-  while (surfaces_.size() > most) {
-    const auto least = std::ranges::min_element(surfaces_, [](const Surface& a, const Surface& b) {
-      return std::pair(a.visits, a.used) < std::pair(b.visits, b.used);
-    });
-    drop(static_cast<std::size_t>(least - surfaces_.begin()));
-  }
+  surfaces_.leave_for_new(settings_.most);
 }
 
 /// Takes a candidate where it is certain enough, or time is over, or at once. Whether one was taken. A known surface is
@@ -348,7 +294,7 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
   }
   hear_on(taken.kind);
   take(taken, judge_label(taken, recalled, decision.sure), probability, segments);
-  if (!present_) {
+  if (!surfaces_.present()) {
     let_go();
   }
   return true;
@@ -358,27 +304,22 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
 void SurfaceBank::take(const SurfaceCandidate& candidate, const std::string& recalled, double probability,
                        int segments) {
   SurfaceEvent event{.kind = SurfaceEvent::Kind::Kept,
-                     .name = present_ ? surfaces_[*present_].name : "",
+                     .name = surfaces_.present_name(),
                      .probability = probability,
                      .segments = segments};
   if (candidate.kind == Kind::Known) {
     event.kind = SurfaceEvent::Kind::Recalled;
     event.name = recalled;
-    const auto place = std::ranges::find(surfaces_, recalled, &Surface::name) - surfaces_.begin();
-    if (place < std::ssize(surfaces_)) {  // else it was merged into the one that was left, and that one is driven on
-      present_ = static_cast<std::size_t>(place);
-      ++surfaces_[*present_].visits;
-      surfaces_[*present_].used = ++clock_;
+    const std::size_t place = surfaces_.place_of(recalled);
+    if (place < surfaces_.size()) {  // else it was merged into the one that was left, and that one is driven on
+      surfaces_.come_to(place);
     }
   } else if (candidate.kind != Kind::Present) {
     event.kind = SurfaceEvent::Kind::Opened;
     event.name = "";
     enter_new();
   }
-  events_.push_back(std::move(event));
-  if (events_.size() > kMostEvents) {
-    events_.erase(events_.begin());
-  }
+  surfaces_.say(std::move(event));
 }
 
 }  // namespace slipwise

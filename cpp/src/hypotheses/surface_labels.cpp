@@ -2,7 +2,6 @@
 // Names of surfaces, by labels and by what sensors say of the terrain: odds of the surfaces that bore them before.
 #include <algorithm>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,36 +14,14 @@ namespace {
 
 using Kind = SurfaceCandidate::Kind;
 
-constexpr std::string_view kNumbered = "surface ";
-
 SLIPWISE_TUNING(kFarBetter, 4.0);  // likelihood ratio at which a trial begins [-]
 
 }  // namespace
 
-bool SurfaceBank::numbered(const std::string& name) {
-  return name.starts_with(kNumbered) && name.find_first_not_of("0123456789 ()", kNumbered.size()) == std::string::npos;
-}
-
-bool SurfaceBank::taken(const std::string& name) const {
-  return std::ranges::find(surfaces_, name, &Surface::name) != surfaces_.end();
-}
-
-std::string SurfaceBank::new_name() {
-  std::string wanted = std::exchange(wanted_, {});
-  if (!wanted.empty() && !taken(wanted)) {
-    return wanted;
-  }
-  std::string name;
-  do {
-    name = std::string(kNumbered) + std::to_string(++named_);
-  } while (taken(name));
-  return name;
-}
-
 /// A label says nothing new where it is the one that speaks already, or names the surface that is driven on.
 void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, const std::string& label) {
   const bool open_already = trial_.has_value() && !held_;
-  const std::string& named = open_already ? label_ : (present_ ? surfaces_[*present_].name : wanted_);
+  const std::string named = open_already ? label_ : (surfaces_.present() ? surfaces_.present_name() : wanted_);
   const bool same = !label.empty() && label == named;
   if (!settings_.remember || same || (open_already && label.empty())) {
     return;
@@ -70,14 +47,15 @@ Eigen::ArrayXd SurfaceBank::label_factors(const std::vector<SurfaceCandidate>& c
     if (each.kind == Kind::Known) {
       return surfaces_[each.place].name;
     }
-    return each.kind == Kind::Present && present_ ? surfaces_[*present_].name : "";
+    return each.kind == Kind::Present ? surfaces_.present_name() : "";
   };
   const bool known = std::ranges::any_of(candidates, [&](const auto& each) { return name_of(each) == label_; });
   Eigen::ArrayXd factors(count);
   for (Eigen::Index i = 0; i < count; ++i) {
     const SurfaceCandidate& each = candidates[static_cast<std::size_t>(i)];
     const std::string name = name_of(each);
-    const bool named = known ? name == label_ : !each.known() || (each.kind == Kind::Known && numbered(name));
+    const bool named =
+        known ? name == label_ : !each.known() || (each.kind == Kind::Known && SurfaceList::numbered(name));
     factors[i] = named ? label_reliability() : (1.0 - label_reliability()) / static_cast<double>(count - 1);
   }
   return factors;
@@ -102,27 +80,26 @@ std::string SurfaceBank::judge_label(const SurfaceCandidate& candidate, const st
   if (label_.empty()) {
     return recalled;
   }
-  const auto here = candidate.kind == Kind::Present && present_
-                        ? surfaces_.begin() + static_cast<std::ptrdiff_t>(*present_)
-                        : std::ranges::find(surfaces_, recalled, &Surface::name);
-  const bool entry = here != surfaces_.end();
-  const bool nameless = entry && numbered(here->name) && !taken(label_);
-  const bool right = entry ? nameless || here->name == label_ : !taken(label_);
+  const std::size_t here =
+      candidate.kind == Kind::Present ? surfaces_.present().value_or(surfaces_.size()) : surfaces_.place_of(recalled);
+  const bool entry = here < surfaces_.size();
+  const bool nameless = entry && SurfaceList::numbered(surfaces_[here].name) && !surfaces_.taken(label_);
+  const bool right = entry ? nameless || surfaces_[here].name == label_ : !surfaces_.taken(label_);
   if (sure) {  // else nothing but the label may have decided
     labels_.all += 1.0;
     labels_.right += right ? 1.0 : 0.0;
   }
   if (nameless) {
-    here->name = label_;
+    surfaces_[here].name = label_;
   } else if (right && !entry) {
     wanted_ = label_;
   }
-  return entry && !recalled.empty() ? here->name : recalled;
+  return entry && !recalled.empty() ? surfaces_[here].name : recalled;
 }
 
 /// Of the present surface, what was said since it was taken counts as one visit more.
 ClassCounts SurfaceBank::heard_on_present() const {
-  ClassCounts classes = present_ ? surfaces_[*present_].classes : ClassCounts{};
+  ClassCounts classes = surfaces_.present() ? surfaces_[*surfaces_.present()].classes : ClassCounts{};
   add_visit(heard_, classes);
   return classes;
 }
@@ -137,7 +114,7 @@ Eigen::ArrayXd SurfaceBank::class_likelihoods(const std::vector<SurfaceCandidate
       const Surface& known = surfaces_[candidates[i].place];
       surface = {known.name, known.classes};
     } else if (candidates[i].kind == Kind::Present) {
-      surface = {present_ ? surfaces_[*present_].name : wanted_, heard_on_present()};
+      surface = {surfaces_.present() ? surfaces_.present_name() : wanted_, heard_on_present()};
     }
     found[static_cast<Eigen::Index>(i)] = likelihood_of(said, surface);
   }
@@ -162,9 +139,10 @@ void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, co
   const ClassCounts said = even_odds(answer);
   const auto likeliest = std::ranges::max_element(said, {}, [](const auto& each) { return each.second; });
   if (!trial_ || held_) {
-    const std::vector<SurfaceCandidate> candidates = candidates_of_change(surfaces_.size(), present_, held_, settings_);
+    const std::vector<SurfaceCandidate> candidates =
+        candidates_of_change(surfaces_.size(), surfaces_.present(), held_, settings_);
     const Eigen::ArrayXd likelihoods = class_likelihoods(candidates, said);
-    const bool others = surfaces_.size() > (present_ ? 1 : 0);
+    const bool others = surfaces_.size() > (surfaces_.present() ? 1 : 0);
     if (!others || doubted_for_ == likeliest->first || likelihoods.maxCoeff() < kFarBetter * likelihoods[0]) {
       add_counts(said, heard_);
       return;

@@ -14,15 +14,18 @@ std::string name_of(const SurfaceBank& bank, const SurfaceCandidate& candidate) 
   if (candidate.kind == Kind::Known) {
     return bank.surfaces()[candidate.place].name;
   }
-  return candidate.kind == Kind::Present && bank.present() ? bank.surfaces()[*bank.present()].name : "";
+  return candidate.kind == Kind::Present ? bank.present_name() : "";
 }
 
 }  // namespace
 
 std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank) {
+  if (!bank.settings().remember) {
+    return {};
+  }
   const std::optional<SurfaceTrial>& trial = bank.trial();
   if (!trial) {
-    return {{.name = bank.present() ? bank.surfaces()[*bank.present()].name : "", .probability = 1.0}};
+    return {{.name = bank.present_name(), .probability = 1.0}};
   }
   std::vector<SurfaceProbability> found;
   const Eigen::VectorXd probabilities = trial->probabilities();

@@ -177,7 +177,7 @@ void MotionLearner::cue_surface(const std::string& label) {
   }
   learner_.change(stream_, [&](MotionHypotheses& hypotheses, const DisturbanceModel& law) {
     if (remember) {
-      hypotheses.cue_surface(law, label);
+      hypotheses.bank().cue(hypotheses.averages(), law, label);
     } else {
       hypotheses.expect_change();
     }
@@ -187,7 +187,7 @@ void MotionLearner::cue_surface(const std::string& label) {
 void MotionLearner::cue_terrain(const TerrainAnswer& answer) {
   check_answer(answer);
   learner_.change(stream_, [&](MotionHypotheses& hypotheses, const DisturbanceModel& law) {
-    hypotheses.hear_terrain(law, answer);
+    hypotheses.bank().hear(hypotheses.averages(), law, answer);
   });
 }
 

@@ -231,7 +231,7 @@ void SegmentLearner::publish(const DrivenSegment& segment, double wheel_interval
   LearnerEvent event{.kind = LearnerEvent::Kind::SegmentLearned, .t = end};
   event.updates = hypotheses_.updates();
   event.weights = hypotheses_.weights();
-  event.surfaces = hypotheses_.probable_surfaces();
+  event.surfaces = surface_probabilities(hypotheses_.bank());
   for (std::size_t i = 0; i < kStructures; ++i) {
     event.posteriors[i] = supported(hypotheses_.of(static_cast<Structure>(i)), wheel_interval, hypotheses_.count());
   }
@@ -248,11 +248,11 @@ void SegmentLearner::publish(const DrivenSegment& segment, double wheel_interval
 }
 
 void SegmentLearner::consider_surfaces(double t) {
-  hypotheses_.consider_surfaces(disturbance_.law());
+  hypotheses_.bank().consider(hypotheses_.averages(), hypotheses_.leader(), disturbance_.law());
   note_surfaces(log_.run(), t);
 }
 
-void SegmentLearner::note_surfaces(std::size_t run, double t) { log_.say(hypotheses_.take_surface_events(), run, t); }
+void SegmentLearner::note_surfaces(std::size_t run, double t) { log_.say(hypotheses_.bank().take_events(), run, t); }
 
 Knowledge SegmentLearner::now_known(double until) const {
   const auto motion = hypotheses_.posterior();  // what predicts best may count the lateness of poses as a delay

@@ -99,20 +99,16 @@ class MotionHypotheses {
   void expect_lasting(const DisturbanceModel& law);
   /// Another drive begins: on a surface that is remembered, or a new one. `law` is the slip disturbance as it is known.
   void start_drive(const DisturbanceModel& law, const DriveStart& start);
-  /// The surface changes now by a label, to the one of this name if any.
-  void cue_surface(const DisturbanceModel& law, const std::string& label);
-  /// A sensor says what the terrain under the robot is.
-  void hear_terrain(const DisturbanceModel& law, const TerrainAnswer& answer);
   /// Segments of one run are not joined with those of another.
   void start_run();
-  /// After a segment: surfaces are suspected, and taken. Whether the estimate changed.
-  bool consider_surfaces(const DisturbanceModel& law);
   /// The surfaces as they are known now, the present one included, and which one that is.
   SurfaceBank surfaces_now(const DisturbanceModel& law) const;
+  /// The surfaces that the structures share; what happens to them needs the averages of those that are tried, and of
+  /// these the one that tells surfaces apart soonest.
+  SurfaceBank& bank() { return bank_; }
   const SurfaceBank& bank() const { return bank_; }
-  std::vector<SurfaceEvent> take_surface_events() { return bank_.take_events(); }
-  /// How probable each surface is to be the one under the robot; empty if none is remembered.
-  std::vector<SurfaceProbability> probable_surfaces() const;
+  Averages averages();
+  std::size_t leader() const;
   /// The estimate of a surface in the terms of a structure; empty if it has no memory.
   std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const;
   /// The same of the surface that is driven on, whether surfaces are remembered or not.
@@ -159,8 +155,6 @@ class MotionHypotheses {
     return std::array<Average*, kAverages>{&self.joint_, self.direct_ ? &*self.direct_ : nullptr,
                                            self.cascaded_ ? &self.cascaded_->slip() : nullptr};
   }
-  Averages averages();  ///< of those that are tried
-  std::size_t leader() const;
   ScoredSegment predict(Structure structure);
   RememberingAverage* average_of(Structure structure);
   ScoredSegment learned(const ModelAverage& average, Structure structure);

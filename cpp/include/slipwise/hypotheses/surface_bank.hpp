@@ -12,8 +12,8 @@
 
 #include "slipwise/filter/driven_speeds.hpp"
 #include "slipwise/hypotheses/remembering_average.hpp"
-#include "slipwise/hypotheses/surface.hpp"
 #include "slipwise/hypotheses/surface_classes.hpp"
+#include "slipwise/hypotheses/surface_list.hpp"
 #include "slipwise/hypotheses/surface_trial.hpp"
 
 namespace slipwise {
@@ -24,17 +24,6 @@ using Averages = std::array<RememberingAverage*, kAverages>;
 struct DriveStart {
   std::string label = {};  ///< name of the surface, if a label gives it
   std::string date = {};
-};
-
-/// Something that happened to the bank.
-struct SurfaceEvent {
-  enum class Kind : std::uint8_t { Opened, Recalled, Kept, Merged, Dropped };
-  friend constexpr std::size_t enumerators(Kind /*type*/) { return 5; }
-  Kind kind;
-  std::string name;
-  std::string other = {};    ///< that was merged into it
-  double probability = 1.0;  ///< of the surface, when it was taken
-  int segments = 0;          ///< that spoke before it was taken
 };
 
 /// How often labels named the surface that was then taken.
@@ -65,13 +54,15 @@ class SurfaceBank {
 
   /// The surface that is driven on is remembered as it is now.
   void keep_present(const Averages& averages, const DisturbanceModel& law);
-  const std::vector<Surface>& surfaces() const { return surfaces_; }
+  const std::vector<Surface>& surfaces() const { return surfaces_.all(); }
   /// The one that is driven on; empty if that is open, or it has no entry yet.
-  std::optional<std::size_t> present() const { return present_; }
+  std::optional<std::size_t> present() const { return surfaces_.present(); }
+  /// Its name; empty where there is none.
+  std::string present_name() const { return surfaces_.present_name(); }
   /// What competes to be it; empty if that is settled.
   const std::optional<SurfaceTrial>& trial() const { return trial_; }
   /// What happened since the last call.
-  std::vector<SurfaceEvent> take_events();
+  std::vector<SurfaceEvent> take_events() { return surfaces_.take_events(); }
   /// How often labels are right: the mean of a Beta distribution that began with 9 of 10.
   double label_reliability() const { return (labels_.right + 9.0) / (labels_.all + 10.0); }
   const LabelCounts& labels() const { return labels_; }
@@ -90,9 +81,8 @@ class SurfaceBank {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.settings_, self.surfaces_, self.present_, self.seconds_, self.segments_, self.speeds_, self.clock_,
-      self.date_);
-    a(self.events_, self.label_, self.wanted_, self.labels_, self.named_, self.leader_);
+    a(self.settings_, self.surfaces_, self.seconds_, self.segments_, self.speeds_, self.date_);
+    a(self.label_, self.wanted_, self.labels_, self.leader_);
     a(self.heard_, self.heard_in_trial_, self.heard_factors_, self.doubted_for_, self.trial_, self.held_);
   }
 
@@ -117,26 +107,16 @@ class SurfaceBank {
   void enter_new();
   void flush(Surface& surface);
   void merge_confounded(const Averages& averages, const DisturbanceModel& law, std::size_t place);
-  void merge(std::size_t older_place, std::size_t newer_place);
-  void drop(std::size_t place);
-  void drop_least_used(std::size_t most);
-  bool taken(const std::string& name) const;
-  static bool numbered(const std::string& name);  // whether it has no name of its own
-  std::string new_name();
 
   SurfaceSettings settings_;
-  std::vector<Surface> surfaces_;
-  std::optional<std::size_t> present_;
+  SurfaceList surfaces_;
   double seconds_ = 0.0;      ///< on the present surface since it was taken
   std::size_t segments_ = 0;  ///< the same
   DrivenSpeeds speeds_;       ///< the same
-  std::size_t clock_ = 0;     ///< surfaces taken so far
   std::string date_;
-  std::vector<SurfaceEvent> events_;
   std::string label_;   ///< that speaks in the trial
   std::string wanted_;  ///< name of the surface that has no entry yet
   LabelCounts labels_;
-  std::size_t named_ = 0;              ///< surfaces that got a number for a name
   std::size_t leader_ = 0;             ///< average that decides, in a trial to its end
   ClassCounts heard_;                  ///< said by sensors on the present surface since it was taken
   ClassCounts heard_in_trial_;         ///< since the trial began

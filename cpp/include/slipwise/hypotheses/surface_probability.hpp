@@ -15,6 +15,7 @@ struct SurfaceProbability {
 };
 
 /// Of the candidates of its trial, those without a name together; of the present surface, where there is no trial.
+/// Nothing where none are remembered.
 std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank);
 
 }  // namespace slipwise
