@@ -59,7 +59,9 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
     channels = {"v": "speed", "omega": "yaw-rate" if model.content.wheelbase is None else "steering"}
     responses = dict(zip(channels, step_responses(model), strict=True))
     said = {place: _said(found, place, responses[place]) for place in channels}
-    return [*_follows(channels, said), *_arrives(channels, found, responses)]
+    late = any(each.delay is not None and not each.lags and not each.at_once for each in said.values())
+    together = ["How much of that is a lag is not known."] if late else []
+    return [*_follows(channels, said), *together, *_arrives(channels, found, responses)]
 
 
 def _car_sentences(model: Model, found: Found) -> list[str]:
