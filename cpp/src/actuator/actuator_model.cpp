@@ -21,6 +21,7 @@ namespace {
 constexpr Eigen::Index kFixed = -1;
 constexpr Eigen::Index kOffset = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kOfSampling = 0.03;  // [s] of a clock offset below zero that wheel speeds make, since they are held
 
 /// Where the parameters of speed and yaw rate stand among the actuator's.
 constexpr AxisPlaces kSpeedPlaces{
@@ -104,9 +105,9 @@ class ActuatorWalk {
         warm_up_(warm_up()),
         rounding_(warm_up_ > 0.0 ? 0.0 : kSameStamp),
         cursor_v_(inputs, actuator.wheelbase, {actuator.delay_v, kSpeedPlaces.delay},
-                  model_start_.t - warm_up_ + rounding_, window.end),
+                  model_start_.t - warm_up_ + rounding_, last_input()),
         cursor_omega_(inputs, actuator.wheelbase, {actuator.delay_omega, kTurnPlaces.delay},
-                      model_start_.t - warm_up_ + rounding_, window.end),
+                      model_start_.t - warm_up_ + rounding_, last_input()),
         v_(speed_, kSpeedPlaces),
         vy_(speed_, kSpeedPlaces),
         omega_(turn_, kTurnPlaces) {
@@ -141,6 +142,9 @@ class ActuatorWalk {
   using Axis = AxisStepper<N>;
   using Row = Axis::Row;
   static constexpr bool kDerivatives = N > 0;
+
+  /// Stamp of the last input that may drive the window [s]: of poses that are stamped early, one after its end.
+  double last_input() const { return std::clamp(end_.t - kOfSampling, window_.end, window_.end + window_.ahead); }
 
   Knot knot_of(double stamp) const { return {stamp - actuator_.clock_offset, kOffset}; }
 

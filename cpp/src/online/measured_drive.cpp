@@ -151,7 +151,8 @@ DrivenSegment MeasuredDrive::driven(const SegmentCut& cut, bool by_wheels, doubl
                                 .z = cut.measured().vector()}},
                   .gx = cut.first.gx,
                   .gy = cut.first.gy,
-                  .heading = cut.first.yaw};
+                  .heading = cut.first.yaw,
+                  .ahead = by_wheels ? kWheelsAhead : 0.0};
   if (cut.fitted) {
     segment.measured.front().sensor.kind = cut.fitted->sensor;
     segment.measured.front().z = cut.fitted->z;
@@ -166,8 +167,8 @@ DrivenSegment MeasuredDrive::driven(const SegmentCut& cut, bool by_wheels, doubl
     set_actuator_state(*this, segment);
   }
   const double known = segment.start - (horizon ? settings.age_of_known(*horizon) : 0.0);
-  InputHistory driving =
-      by_wheels ? wheels_over(path_start(segment) - kWheelsBack, segment.end) : commanded(segment, kLookBack, known);
+  InputHistory driving = by_wheels ? wheels_over(path_start(segment) - kWheelsBack, segment.end + segment.ahead)
+                                   : commanded(segment, kLookBack, known);
   return {.inputs = std::move(driving), .segment = std::move(segment), .known_at = known_at};
 }
 
@@ -201,8 +202,10 @@ DrivenSegment MeasuredDrive::ahead(Segment segment, const std::vector<InputSampl
     set_actuator_state(*this, segment);
   }
   const double now = segment.start;
-  const std::vector<InputSample> all = repeated(*this, now, segment.end, future);
-  InputHistory driving = by_wheels ? wheels.slice(now - kWheelsBack, segment.end, SliceKind::Wheels, all)
+  segment.ahead = by_wheels ? kWheelsAhead : 0.0;
+  const double end = segment.end + segment.ahead;
+  const std::vector<InputSample> all = repeated(*this, now, end, future);
+  InputHistory driving = by_wheels ? wheels.slice(now - kWheelsBack, end, SliceKind::Wheels, all)
                                    : commanded(segment, kLookBack, now, all);
   return {.inputs = std::move(driving), .segment = std::move(segment), .known_at = now};
 }

@@ -122,7 +122,7 @@ bool SegmentStream::take_input(Stream stream, const InputSample& sample) {
 
 bool SegmentStream::push(const Measurement& measurement) {
   const bool taken = std::visit([this](const auto& sample) { return take(sample); }, measurement);
-  advance(newest_ - settings().latency);
+  advance(newest_ - settings().latency - kWheelsAhead);
   return taken;
 }
 

@@ -26,7 +26,7 @@ constexpr std::size_t kAtStart = 0;
 
 ActuatorSpan window_of(const Segment& segment) {
   const auto [start, end] = path_span(segment);
-  return {.start = start, .end = end, .initial = segment.initial, .known = segment.known};
+  return {.start = start, .end = end, .initial = segment.initial, .known = segment.known, .ahead = segment.ahead};
 }
 
 bool calibrated(const Segment& segment) { return segment.measured.front().sensor.calibrated; }

@@ -218,6 +218,17 @@ TEST_CASE("inputs later than the window's end are not used") {
   CHECK((totals(long_log) - totals(short_log)).norm() == 0.0);
 }
 
+TEST_CASE("inputs ahead of the window's end drive what is stamped early") {
+  const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
+  const auto early = [&](double ahead) {
+    return totals(
+        actuator_steps(inputs, ActuatorModel{.clock_offset = -0.1}, {.start = 1.04, .end = 2.04, .ahead = ahead}));
+  };
+  const auto shifted = totals(actuator_steps(inputs, {}, {.start = 1.14, .end = 2.14}));
+  CHECK((early(0.15) - shifted).norm() < 1e-12);
+  CHECK((early(0.0) - shifted).norm() > 1e-4);
+}
+
 TEST_CASE("a robot that was measured at rest starts from rest") {
   const InputHistory inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
   const ActuatorModel actuator{.time_constant_v = 1e6, .time_constant_omega = 1e6};

@@ -48,6 +48,19 @@ def test_clock_offset_is_recovered_from_short_runs_that_begin_in_motion() -> Non
     assert model.mean[-1] == pytest.approx(0.15, abs=0.02)
 
 
+def test_wheel_speeds_that_are_stamped_late_change_no_slip() -> None:
+    """A board that stamps them when they arrive makes poses early: what follows the last pose counts."""
+    drive = Drive(seconds=150.0, seed=3, basis=_core.named_basis("edd-2"), alpha=TRUTHS["edd-2"])
+    settings = make_settings({"basis": "edd-2"})
+    right, early = (
+        calibrate(simulated_log(replace(drive, late=late)), input="wheel", settings=settings).model
+        for late in (0.0, -0.1)
+    )
+    assert early.mean[:2] == pytest.approx(right.mean[:2], abs=0.002)
+    assert early.mean[2] - right.mean[2] == pytest.approx(-0.1, abs=0.005)
+    assert early.mean[1] == pytest.approx(-0.4, abs=3.0 * np.sqrt(early.covariance[1, 1]))
+
+
 def part_of(run: Run, start: float, end: float) -> Run:
     assert run.wheels is not None
     wheels = run.wheels.select((run.wheels.t >= start) & (run.wheels.t <= end))

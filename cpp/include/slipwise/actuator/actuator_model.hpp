@@ -43,10 +43,11 @@ struct MeasuredActuator {
 /// A stretch of time, in pose stamps, and the drive's state at its start.
 struct ActuatorSpan {
   double start;                                ///< [s]
-  double end;                                  ///< [s]; inputs later than this are not used
+  double end;                                  ///< [s]; inputs later than this are not used, but `ahead`
   std::optional<BodyTwist> initial = {};       ///< the drive's twist, where it was measured: at the start, or
   std::optional<MeasuredActuator> known = {};  ///< where the drive is known until some moment, at that moment
   double longest_step = 0.1;                   ///< [s]; a lagging twist is averaged over no more than this
+  double ahead = 0.0;                          ///< [s] after the end in which inputs drive what is stamped early
 };
 
 /// One step of constant mean twist: its duration and its integrals.

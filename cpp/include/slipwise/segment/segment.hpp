@@ -27,6 +27,7 @@ struct Segment {
   std::optional<MeasuredActuator> known = {};          ///< what was measured of the drive; `initial` is where it ends
   std::shared_ptr<const Ground> ground = {};           ///< what tilts the robot; nothing on level ground
   double heading = 0.0;  ///< of the first pose in the frame of the poses [rad]; forces fixed there depend on it
+  double ahead = 0.0;    ///< [s] after the end in which inputs are known, for poses that are stamped early
 };
 
 /// Whether a filter learns from it how large noise is.
