@@ -9,6 +9,7 @@ from collections.abc import Sequence
 DASH = "–"
 ROUNDING = 1e-12  # in SI units; what is smaller is the rounding of a computation, not a result
 MOST_DECIMALS = 6
+NOTHING_BESIDE = 1e-3  # of the largest of several numbers
 
 
 def list_text(words: Sequence[str], last: str) -> str:
@@ -24,6 +25,17 @@ def number_text(value: float, digits: int = 3) -> str:
         return "0"
     decimals = _decimals(value, digits)
     return f"{value:.{max(decimals, 0)}f}" if -3 <= decimals <= MOST_DECIMALS else f"{value:.{digits}g}"
+
+
+def beside_text(value: float, largest: float) -> str:
+    """Return a number beside the largest of its kind: what is nothing beside that is 0, not 1e-09."""
+    return number_text(value if abs(value) >= NOTHING_BESIDE * abs(largest) else 0.0)
+
+
+def span_text(ends: Sequence[float]) -> str:
+    """Return the ends of a range, such as `-0.5 to 1.35`."""
+    largest = max(map(abs, ends), default=0.0)
+    return " to ".join(beside_text(end, largest) for end in ends)
 
 
 def estimate_texts(value: float, std: float) -> tuple[str, str]:

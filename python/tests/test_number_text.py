@@ -3,7 +3,7 @@
 
 import pytest
 
-from slipwise.number_text import estimate_text, number_text
+from slipwise.number_text import estimate_text, number_text, span_text
 
 
 def test_numbers_have_three_digits(subtests: pytest.Subtests) -> None:
@@ -32,6 +32,18 @@ def test_an_estimate_ends_where_its_standard_deviation_does(subtests: pytest.Sub
     ]:
         with subtests.test(value=value, std=std, text=text):
             assert estimate_text(value, std) == text
+
+
+def test_what_is_nothing_beside_the_other_end_of_a_range_is_zero() -> None:
+    assert [
+        span_text(ends) for ends in ((1e-9, 1.5), (-0.5, 1.5), (-1.0, 2e-4), (0.0, 0.0), (2e-9, 3e-9))
+    ] == [
+        "0 to 1.50",
+        "-0.500 to 1.50",
+        "-1.00 to 0",
+        "0 to 0",
+        "2e-09 to 3e-09",
+    ]
 
 
 def test_what_a_computation_rounds_off_is_zero() -> None:

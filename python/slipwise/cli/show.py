@@ -56,13 +56,13 @@ def show(model: ModelFile, input_name: ModelInput = None, json: Json = None) -> 
 
 def _origin(model: Model) -> tuple[str, ...]:
     """Where the model comes from, and where it holds."""
-    from slipwise.number_text import number_text
+    from slipwise.number_text import span_text
 
     origin, span = model.content.provenance, model.content.range
-    speed, yaw_rate = (" to ".join(number_text(end) for end in ends) for ends in (span.speed, span.yaw_rate))
+    speed, yaw_rate = span_text(span.speed), span_text(span.yaw_rate)
     amount = f"{origin.learned_segments} segments, {origin.learned_seconds:.0f} s of driving"
     commands = [
-        f"{name} {number_text(ends[0])} to {number_text(ends[1])}"
+        f"{name} {span_text(ends)}"
         for name in ("throttle", "steering")
         if (ends := getattr(span, name)) is not None
     ]

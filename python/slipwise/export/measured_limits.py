@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from slipwise.export.actuator import actuator_of
 from slipwise.export.body_limits import Gains, body_limits, slip_gains, strictest
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
-from slipwise.models.body_gains import body_twists
+from slipwise.models.body_gains import body_twists, gains_at_sides
 from slipwise.models.model import Model
 from slipwise.models.schema import MeasuredBody
 
@@ -48,12 +48,12 @@ class MeasuredLimits:
         self._body = model.content.range.body
         self._driven_back = model.content.range.speed[0] < 0.0
         self._numbers = numbers
-        self.actuator, limits = actuator_of(model), model.limits_section
+        self.actuator = actuator_of(model)
         slip = slip_gains(numbers, body_twists(model))
         self.behind: Gains = (self.actuator.v.gain * slip[0], self.actuator.omega.gain * slip[1])
-        before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
+        before = gains_at_sides(model)
         self.gains: Gains = (self.behind[0] * before[0], self.behind[1] * before[1])
-        self.learned = body_limits(limits, self.behind, numbers)
+        self.learned = body_limits(model.limits_section, self.behind, numbers)
 
     def top_speed(self) -> Answer:
         """Speed ahead [m/s]."""

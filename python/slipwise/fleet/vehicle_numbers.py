@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from slipwise.fleet.log_kinds import logs_of_kinds
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import known
-from slipwise.models.slip_words import slip_gains
-from slipwise.models.step_response import step_responses
+from slipwise.models.slip_words import whole_gains
+from slipwise.models.step_response import rises
 
 WORDS = {
     "drives": "drives",
@@ -50,26 +50,15 @@ def vehicle_numbers(model: Model) -> VehicleNumbers:
     """Return the numbers of a model learned from one log."""
     found: dict[str, float] = {}
     if model.motion.slip_size:
-        slip = slip_gains(model)
-        from_commands = model.content.input == "command"
-        actuator = model.motion.actuator(model.mean) if from_commands else None
-        gains = (1.0, 1.0) if actuator is None else (actuator.gain_v, actuator.gain_omega)
-        pairs = (("drives", slip.speed, gains[0]), ("turns", slip.yaw_rate, gains[1]))
-        found |= {name: gain.value * times for name, gain, times in pairs if gain.identified}
-        multiplier = slip.separation
+        gains = whole_gains(model)
+        pairs = (("drives", gains.speed), ("turns", gains.yaw_rate))
+        found |= {name: gain.value for name, gain in pairs if gain.identified}
+        multiplier = gains.separation
         if multiplier is not None and multiplier.identified and multiplier.value > 0.0:
             found["multiplier"] = multiplier.value
-        if from_commands:
-            speed, turn = (response.risen for response in step_responses(model))
-            if model.car is not None:  # what is behind its curves is short
-                delay = model["car.delay"]
-                speed, turn = (
-                    (delay.value + model[name].value, model[name].std)  # together known as well as a lag
-                    for name in ("car.lag", "car.steering_lag")
-                )
-            found |= {
-                name: risen[0] for name, risen in (("lag_speed", speed), ("lag_turn", turn)) if known(*risen)
-            }
+        if model.content.input == "command":
+            late = zip(("lag_speed", "lag_turn"), rises(model), strict=True)
+            found |= {name: risen[0] for name, risen in late if known(*risen)}
     held_out = model.content.verdict.held_out
     if held_out is not None and held_out.segments:
         found |= {"error_heading": held_out.heading, "baseline_heading": held_out.baseline_heading}

@@ -51,6 +51,12 @@ def sideways_twists(model: Model) -> BodyTwists | None:
     return _twists(model, np.zeros_like(vy), np.zeros_like(vy), vy)
 
 
+def gains_at_sides(model: Model) -> tuple[float, float]:
+    """Return the gains of speed and yaw rate in front of limits of the sides; without these they are 1."""
+    limits = model.limits_section
+    return (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
+
+
 def turning_twists(model: Model, radius: float) -> BodyTwists:
     """Return the body's twists while turning at `radius` [m] to either side, as fast as the log went."""
     span = model.content.range

@@ -14,7 +14,7 @@ from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, physical_parameters
 from slipwise.models.schema import AxisShares
 from slipwise.models.share_words import AXES, axis_shares
-from slipwise.models.slip_words import Gain, slip_gains
+from slipwise.models.slip_words import Gain, whole_gains
 from slipwise.models.step_response import rise_times
 
 #: Standard deviations of a difference from which on two models differ.
@@ -110,14 +110,12 @@ def _comparable(model: Model, first: Model, second: Model) -> tuple[PhysicalPara
 
 def _gains(model: Model) -> list[tuple[str, Gain | None]]:
     """Gains of the body over what is commanded, or over what the wheels say."""
-    gains, drive = slip_gains(model), {p.name: Gain(p.value, p.std) for p in physical_parameters(model)}
-    exact = Gain(1.0, 0.0)
-    of_speed, of_turn = (drive.get(name, exact) for name in ("gain_v", "gain_omega"))
+    gains = whole_gains(model)
     separation = gains.separation if model.content.input == "wheel" else None
     return [
-        ("speed gain", gains.speed.times(of_speed)),
-        ("sideways gain", None if gains.sideways is None else gains.sideways.times(of_speed)),
-        ("yaw-rate gain", gains.yaw_rate.times(of_turn)),
+        ("speed gain", gains.speed),
+        ("sideways gain", gains.sideways),
+        ("yaw-rate gain", gains.yaw_rate),
         ("separation multiplier", separation),
     ]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise.errors import UnseenSpeed
 from slipwise.models.model import Model
-from slipwise.number_text import number_text
+from slipwise.number_text import beside_text, number_text
 
 SIDE = 0.2  # of the largest speed: up to there, a side that was never driven is as good as rest
 FAR = 2.0  # times the largest speed of the log: beyond it, terms such as V^2 reach where no data were
@@ -44,9 +44,9 @@ def warn_of_unseen_speeds(model: Model, commands: NDArray[Any], *, stacklevel: i
             if side * most > max(FAR * side * end, SIDE * largest, REST):
                 warned = True
                 warnings.warn(
-                    f"a {name} of {number_text(most)} {unit} is far beyond the {number_text(end)} {unit} "
-                    "that the model has seen: the prediction is a guess there. Calibrate from a drive that "
-                    "has such.",
+                    f"a {name} of {number_text(most)} {unit} is far beyond the "
+                    f"{beside_text(end, largest)} {unit} that the model has seen: the prediction is a guess "
+                    "there. Calibrate from a drive that has such.",
                     UnseenSpeed,
                     stacklevel=stacklevel + 1,
                 )

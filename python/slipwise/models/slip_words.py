@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import hypot
 
 import numpy as np
+from numpy.typing import NDArray
 
-from slipwise.models.body_gains import body_twists, sideways_twists
+from slipwise.models.body_gains import body_twists, gains_at_sides, sideways_twists
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, known
-from slipwise.number_text import estimate_text, list_text
+from slipwise.number_text import estimate_text, list_text, number_text
+
+Floats = NDArray[np.float64]
 
 LEARNED = 0.15  # standard deviation up to which a gain of the actuator is learned; that of its prior is 0.2
 AS_COMMANDED = 0.02  # a gain of the actuator that is known to be so close to one is not worth a sentence
@@ -29,19 +31,16 @@ class Gain:
         """Whether it is known to the stated fraction."""
         return known(self.value, self.std) and self.std > 0.0
 
-    def times(self, other: Gain) -> Gain:
-        """Return the product of two gains whose errors are independent."""
-        value = self.value * other.value
-        return Gain(value, hypot(self.std * other.value, other.std * self.value))
-
     def percent(self) -> str:
-        """Return the gain in percent."""
+        """Return the gain in percent; a model does not say how well a gain in front of limits is known."""
+        if self.std == 0.0:
+            return f"{number_text(100.0 * self.value)} %"
         return estimate_text(100.0 * self.value, 100.0 * self.std) + " %"
 
 
 @dataclass(frozen=True)
 class SlipGains:
-    """Speeds and yaw rate of the body over those of its wheels: straight lines over the range of the log."""
+    """Speeds and yaw rate of the body over those that go in: straight lines over the range of the log."""
 
     speed: Gain
     sideways: Gain | None  # None of a base that does not drive to its sides
@@ -50,26 +49,48 @@ class SlipGains:
 
 
 def slip_gains(model: Model) -> SlipGains:
-    """Return the gains of the body, with the standard deviations that follow from the covariance.
+    """Return the gains of the body over its wheels, with the deviations that follow from the covariance.
 
     A gain has no standard deviation where the log never drove, or never turned, or where no slip is learned.
     """
-    body = body_twists(model)
-    size = model.motion.slip_size
-    covariance = model.covariance[:size, :size]
+    return _gains(model, through_drive=False)
+
+
+def whole_gains(model: Model) -> SlipGains:
+    """Return the gains of the body over what is commanded, or over what the wheels say: slip and drive.
+
+    The poses show the product, so it is known better than either: their errors are not independent.
+    """
+    return _gains(model, through_drive=True)
+
+
+def _gains(model: Model, *, through_drive: bool) -> SlipGains:
+    body, size, names = body_twists(model), model.motion.slip_size, model.vector.names
+    covariance = model.covariance
+    before = gains_at_sides(model) if through_drive else (1.0, 1.0)
+
+    def gain(slip: float, by_slip: Floats, drive: str = "", factor: float = 1.0) -> Gain:
+        """Return slip times a factor, times what the drive makes of its input where that is learned."""
+        by = np.zeros(len(names))
+        by[:size] = factor * by_slip
+        value = factor * slip
+        if through_drive and drive in names:
+            place = names.index(drive)
+            by *= model.mean[place]
+            by[place] = value
+            value *= model.mean[place]
+        return Gain(float(value), max(float(by @ covariance @ by), 0.0) ** 0.5)
+
     speed, by_speed = body.line(0, body.v)
     yaw, by_yaw = body.line(2, body.w)
+    of_speed = gain(speed[0], by_speed[0], "gain_v", before[0])
+    of_turn = gain(yaw[0], by_yaw[0], "gain_omega", before[1])
+    if (sides := sideways_twists(model)) is not None:
+        left, by_left = sides.line(1, sides.vy)
+        return SlipGains(of_speed, gain(left[0], by_left[0], "gain_v", before[0]), of_turn, None)
     ratio = speed[0] / yaw[0] if yaw[0] else np.nan
     by_ratio = (by_speed[0] - ratio * by_yaw[0]) / yaw[0] if yaw[0] else by_yaw[0]
-
-    def gain(value: float, derivative: np.ndarray) -> Gain:
-        return Gain(float(value), float(np.sqrt(max(derivative @ covariance @ derivative, 0.0))))
-
-    gains = gain(speed[0], by_speed[0]), gain(yaw[0], by_yaw[0])
-    if (sides := sideways_twists(model)) is None:
-        return SlipGains(gains[0], None, gains[1], gain(ratio, by_ratio))
-    left, by_left = sides.line(1, sides.vy)
-    return SlipGains(gains[0], gain(left[0], by_left[0]), gains[1], None)
+    return SlipGains(of_speed, None, of_turn, gain(ratio, by_ratio))
 
 
 def slip_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> list[str]:
@@ -82,10 +103,7 @@ def slip_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> l
         return [_moves(slip, "its wheels say", _separation(slip.separation))]
     if not exact:
         return [_moves(slip, "its wheels say"), *_reaches(actuator)]
-    of_speed, of_turn = actuator.values()
-    sideways = None if slip.sideways is None else slip.sideways.times(of_speed)
-    all_in_all = SlipGains(slip.speed.times(of_speed), sideways, slip.yaw_rate.times(of_turn), None)
-    return [_moves(all_in_all, "is commanded" if model.car is None else "its curves say")]
+    return [_moves(whole_gains(model), "is commanded" if model.car is None else "its curves say")]
 
 
 def _moves(gains: SlipGains, source: str, besides: str = "") -> str:
@@ -106,10 +124,15 @@ def _separation(multiplier: Gain | None) -> str:
 
 def _actuator_gains(model: Model, parameters: tuple[PhysicalParameter, ...]) -> dict[str, Gain]:
     """Return the gain of each axis of commands by its name."""
-    found = {p.name: Gain(p.value, p.std) for p in parameters}
-    exact = Gain(1.0, 0.0)
+    learned = {p.name: p for p in parameters}
     turn = "yaw rate" if model.content.wheelbase is None else "steering"
-    return {"speed": found.get("gain_v", exact), turn: found.get("gain_omega", exact)}
+    found = {}
+    for axis, name, factor in zip(
+        ("speed", turn), ("gain_v", "gain_omega"), gains_at_sides(model), strict=True
+    ):
+        gain = learned.get(name)
+        found[axis] = Gain(factor, 0.0) if gain is None else Gain(factor * gain.value, factor * gain.std)
+    return found
 
 
 def _reaches(actuator: dict[str, Gain]) -> list[str]:

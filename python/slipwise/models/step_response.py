@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.models.body_gains import gains_at_sides
 from slipwise.models.model import Model
 
 Floats = NDArray[np.float64]
@@ -45,18 +46,35 @@ def step_responses(model: Model) -> tuple[StepResponse, StepResponse]:
     return speed, turn
 
 
+def rises(model: Model) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return how long 63 % of a step of speed and of turning take, and the standard deviations [s].
+
+    Of a car that is commanded by throttle and steering they are delay and lag of its curves: what is behind
+    these is short.
+    """
+    if model.car is None:
+        speed, turn = (response.risen for response in step_responses(model))
+        return speed, turn
+    names, covariance = model.table.names, model.table.covariance
+
+    def late(lag: str) -> tuple[float, float]:
+        places = [names.index(name) for name in ("car.delay", lag)]
+        variance = float(covariance[np.ix_(places, places)].sum())
+        return float(model.table.values[places].sum()), max(variance, 0.0) ** 0.5
+
+    return late("car.lag"), late("car.steering_lag")
+
+
 def rise_times(model: Model) -> dict[str, tuple[float, float]]:
     """Return how long 63 % of a step take, by delay and lags together, and its standard deviation [s].
 
-    These compare where drives are described otherwise. There are none of wheels, of a car that is commanded
-    by throttle and steering, or where it was not learned.
+    These compare where drives are described otherwise. There are none of wheels, or where it was not learned.
     """
-    if model.content.input != "command" or model.car is not None:
+    if model.content.input != "command":
         return {}
-    turn = "yaw rate" if model.content.wheelbase is None else "steering"
+    turn = "yaw rate" if model.content.wheelbase is None and model.car is None else "steering"
     found = {
-        f"63 % of a step of {name}": step.risen
-        for name, step in zip(("speed", turn), step_responses(model), strict=True)
+        f"63 % of a step of {name}": risen for name, risen in zip(("speed", turn), rises(model), strict=True)
     }
     return {name: risen for name, risen in found.items() if np.isfinite(risen[0]) and risen[1] > 0.0}
 
@@ -71,7 +89,8 @@ def _numbers(model: Model, parameters: Floats) -> Floats:
     arrived = (1.0 - fraction) * fast + fraction * slow  # two lags side by side
     soon = [np.interp(SOON - delays[k], _TIMES, arrived[:, k], left=0.0) for k in (0, 1)]
     risen = delays + [_risen(channel) for channel in arrived.T]
-    return np.concatenate((risen, np.array([actuator.gain_v, actuator.gain_omega]) * soon))
+    gains = np.array([actuator.gain_v, actuator.gain_omega]) * gains_at_sides(model)
+    return np.concatenate((risen, gains * soon))
 
 
 def _lagging(time_constant_v: float, time_constant_omega: float) -> Floats:

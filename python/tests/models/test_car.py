@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from sample_cars import changed_car, true_car, write_car_log
+from sample_models import make_model, named
 
 import slipwise as sw
 from slipwise import _core
@@ -16,8 +17,11 @@ from slipwise.calibration.learned_log import new_learner, pushed
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import ModelError
 from slipwise.export import export_model
+from slipwise.fleet.vehicle_numbers import vehicle_numbers
 from slipwise.logs import Log, LogOptions
 from slipwise.models.car import KnotCurveSection
+from slipwise.models.difference import differences
+from slipwise.models.step_response import rise_times
 from slipwise.planning import Planner, curvature_map, lattice_primitives
 
 
@@ -145,3 +149,18 @@ def test_the_truth_lies_within_what_is_predicted_at_throttles_driven_and_not(tmp
             found += [squared(model, car, rng.uniform(*throttles), rng.uniform(-0.9, 0.9)) for _ in range(10)]
     within = {name: np.mean(np.array(each) < 7.81) for name, each in (("in", inside), ("beyond", beyond))}
     assert all(share > 0.85 for share in within.values()), within
+
+
+def test_a_car_is_as_late_as_delay_and_lag_of_its_curves_together() -> None:
+    curves = (_core.KnotCurve([-1.0, 1.0], [-2.0, 2.0], [0.0] * 2),) * 2
+    car = _core.CarCurves(*curves, 0.4, 0.1, 0.15, 0.08, 0.2)
+    covariance = np.zeros((9, 9))
+    covariance[np.ix_((4, 8), (4, 8))] = [[0.0101, -0.01], [-0.01, 0.01]]  # of lag and delay
+    model = make_model(
+        dataclasses.replace(named("edd-2"), commands=True, car=car.with_spread(covariance, np.ones(9)))
+    )
+    late = rise_times(model)
+    assert late["63 % of a step of speed"] == pytest.approx((0.6, 0.01))
+    assert late["63 % of a step of steering"] == pytest.approx((0.3, 0.1))
+    assert vehicle_numbers(model).lag_speed == pytest.approx(0.6)
+    assert {"63 % of a step of speed"} <= {row.name for row in differences(model, model)}
