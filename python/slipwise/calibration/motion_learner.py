@@ -277,6 +277,8 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             positions=self._positions,
             gyro=self._positions or self._gyro_alone,
             sensor_yaw=self._settings.sensor_extrinsics.yaw,
+            steered=bool(self._wheelbase) and car_of(self._settings) is None,
+            sideways=self._sideways["command"].span is not None,
         )
 
     def _remembered(self, content: ModelFile, learned: Learned) -> ModelFile:

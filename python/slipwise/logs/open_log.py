@@ -18,11 +18,12 @@ from slipwise.argument_types import check_arguments
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.command_timeout import with_ended_commands
 from slipwise.logs.corrections import scaled_inputs, turned_poses
+from slipwise.logs.findings.finding import RefusedLogError
+from slipwise.logs.findings.steering import NotSteered, driven_sideways
 from slipwise.logs.log import Floats, Inputs, Log, Poses, Run, run_name
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
 from slipwise.logs.remote import local_file
-from slipwise.models.axes import sideways_span
 
 _KNOWN = (
     "give a tidy CSV, CSV.gz or Parquet file, a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder), "
@@ -163,13 +164,8 @@ def _steered(log: Log, wheelbase: float) -> Log:
     Raises:
         LogError: they drive it sideways.
     """
-    given = [run.commands for run in log.runs if run.commands is not None]
-    if any(sideways_span(commands.v, commands.vy) is not None for commands in given):
-        raise LogError(
-            "commands drive the robot sideways, and a wheelbase is of one that steers",
-            where=log.sources[0].path,
-            advice="leave the wheelbase away",
-        )
+    if driven_sideways(log.runs):
+        raise RefusedLogError(NotSteered.of_sideways(), log.sources[0].path)
     runs = tuple(
         run if run.commands is None else replace(run, commands=replace(run.commands, wheelbase=wheelbase))
         for run in log.runs

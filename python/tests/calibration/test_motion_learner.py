@@ -137,6 +137,16 @@ def test_a_learner_that_follows_no_disturbance_has_a_model_without_one(log: Log)
     assert sw.calibrate(log, input="command", settings=settings).model.content.slip_disturbance is None
 
 
+def test_a_wheelbase_of_a_robot_that_is_commanded_sideways_is_a_contradiction_of_the_stream() -> None:
+    learner = sw.MotionLearner(input="command", wheelbase=0.5)
+    learner.start_run("omni")
+    for k in range(200):
+        learner.push_command(0.1 * k, 0.5, 0.2, 0.0 if k < 100 else 0.3)
+        learner.push_pose(0.1 * k, 0.05 * k, 0.0, 0.0)
+        kinds = [each.kind for each in learner.contradictions()]
+        assert ("not-steered" in kinds) == (k >= 100)
+
+
 def test_too_little_is_said_in_one_line() -> None:
     learner = sw.MotionLearner("command")
     learner.start_run("empty")

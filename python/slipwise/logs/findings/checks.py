@@ -22,6 +22,7 @@ from slipwise.logs.findings.headings import (
     ConstantHeading,
     HeadingJump,
     LostHeading,
+    OtherUnit,
     TurnedPoses,
     UnlikelySpeed,
 )
@@ -36,6 +37,7 @@ from slipwise.logs.findings.sensor_place import SensorOffCentre
 from slipwise.logs.findings.source_scale import SourceScale
 from slipwise.logs.findings.sources import IdleSource, TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
+from slipwise.logs.findings.steering import NotSteered, driven_sideways, steered
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
 from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
 from slipwise.logs.held import UNKNOWN_AFTER
@@ -45,7 +47,7 @@ from slipwise.logs.motion_windows import evidence_of
 _LONG = 4  # times as many windows suffice of a robot that hardly turns, or only turns
 
 #: What else looks wrong follows from these.
-FIRST: tuple[Check, ...] = (DeadWheel(), Implausible(), UnreachablePoses())
+FIRST: tuple[Check, ...] = (NotSteered(), DeadWheel(), Implausible(), UnreachablePoses())
 #: In the order in which they are looked for: what explains others comes before them.
 THEN: tuple[Check, ...] = (
     UnlikelySpeed(),
@@ -61,6 +63,7 @@ THEN: tuple[Check, ...] = (
     LostHeading(),
     RepeatedWheels(),
     WheelSize(),
+    OtherUnit(),
     Unrelated(),
 )
 #: What only a whole log shows.
@@ -200,6 +203,8 @@ def seen_in(
         positions=has_course(log.runs),
         gyro=False,
         sensor_yaw=sensor_yaw,
+        steered=steered(runs),
+        sideways=driven_sideways(runs),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise.logs.findings.driven_windows import MOST_TURN, DrivenWindows
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.findings.input_units import likely_speeds
+from slipwise.logs.findings.input_units import likely_commands, likely_speeds
 from slipwise.number_text import estimate_text
 
 if TYPE_CHECKING:
@@ -23,6 +23,10 @@ _TURNED = math.radians(30.0)  # a mean course further off than this is no slip; 
 _SQUARE = math.radians(20.0)  # a frame that is turned by so little more or less than a right angle
 _SLOWEST = {"commands": 0.2, "wheels": 0.4}  # of the inputs' speed; spinning wheels lose less, limits more
 _FASTEST = 3.0  # the same; nothing pushes a robot so fast
+_ENOUGH_OF_EACH = 20  # windows, slow and fast ones together
+_LEAST = 0.05  # [m] by the commands, in a window
+_ALIKE = 0.1  # of the speed: what slow and fast commands differ by at most, of a robot that answers late
+_TURNS_MORE = 1.25  # times as much of the turns as of the speed: its yaw rate is in rad/s
 _NO_TURN = 0.01  # of the inputs' turns
 _ENOUGH_TURN = 3.0  # [rad] in total, by the inputs
 _JUMP = 0.9  # mean length of the two courses before and after a jump
@@ -144,6 +148,40 @@ class UnlikelySpeed(Check):
             f"the poses move {scale:.2g} times as far as the {words.name} say: {words.speed} is not in m/s"
             + (f", perhaps {units}" if units else ""),
             factor if scale < 1.0 else f"Check the units of poses, too. {factor}",
+            evidence=scale,
+        )
+
+
+class OtherUnit(Check):
+    """Commands of which the robot drives as little as if they were in km/h, at all speeds alike."""
+
+    kind, family, spoils = "other-unit", "signs and units", False
+    means = "commanded speeds are in km/h or miles per hour, or the drive has such a gain"
+    shows = "poses move 0.26 to 0.29 or 0.41 to 0.46 of it, slow as fast; of turns a quarter more"
+    cure = "`--command-scale 0.27778,1`, if they are"
+    explained_by = ("unlikely-speed", "does-not-move", "lost-heading", "unrelated")
+
+    def look(self, seen: Seen) -> Finding | None:
+        """Compare slow with fast commands: a drive that is capped does less of fast ones."""
+        turns, w = seen.agreement(seen.input_name), seen.windows
+        asked = np.hypot(w.forward, w.sideways)
+        along = (asked > _LEAST) & (np.abs(w.rotation) < MOST_TURN) & (np.abs(w.turn) < MOST_TURN)
+        if seen.input_name != "command" or not _agree(seen.driven) or along.sum() < _ENOUGH_OF_EACH:
+            return None
+        asked, done = asked[along], (w.distance[along] / asked[along])
+        slow = asked <= np.median(asked)
+        scale, *halves = (float(np.median(done[part])) for part in (slow | ~slow, slow, ~slow))
+        unit = likely_commands(scale)
+        alike = all(abs(half / scale - 1.0) < _ALIKE for half in halves)
+        well_turned = turns.turning > _ENOUGH_TURN and turns.yaw_ratio > _TURNS_MORE * scale
+        if unit is None or not alike or not well_turned:
+            return None
+        name, factor = unit
+        return self.found(
+            f"the robot drives {100.0 * scale:.0f} % of what it is commanded, slowly as fast, and turns "
+            f"{100.0 * turns.yaw_ratio:.0f} %: the commanded speed is in {name} ({100.0 * factor:.0f} % of "
+            "m/s), or the drive has such a gain",
+            f"If it is in {name}, --command-scale {factor:.5g},1 converts it.",
             evidence=scale,
         )
 

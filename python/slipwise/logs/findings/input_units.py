@@ -16,6 +16,8 @@ _WHEEL = {  # radians per second in a wheel's unit
 }
 _RADIUS = (0.03, 0.6)  # m, of wheels of ground robots
 _SPEED = {"mm/s": 0.001, "cm/s": 0.01, "km/h": 1.0 / 3.6, "ft/s": 0.3048}
+_COMMANDED = {"km/h": 1.0 / 3.6, "miles per hour": 0.44704}  # a drive of such a gain works all the same
+_SAME = (0.92, 1.03)  # of the unit; drives that do what they are asked do so much
 _TURN = {name: size for name, size in _WHEEL.items() if name != "rad/s"} | {"mrad/s": 0.001}
 _SLIP = (0.85, 1.05)  # how far a robot moves for what its wheels say, ordinarily
 _TURN_SLIP = (0.35, 1.1)  # the same of turns
@@ -30,6 +32,11 @@ def likely_speeds(scale: float) -> str:
         if _within(scale / size, _RADIUS)
     ]
     return list_text([*plain, *wheels], "or")
+
+
+def likely_commands(scale: float) -> tuple[str, float] | None:
+    """Return a unit, and its factor, of which poses would move `scale` of what commands say; None of none."""
+    return next((each for each in _COMMANDED.items() if _within(scale / each[1], _SAME)), None)
 
 
 def likely_turns(scale: float) -> tuple[str, float]:

@@ -52,6 +52,8 @@ class Seen:
     positions: bool  # headings are courses, which tell nothing of a heading
     gyro: bool  # turns of a gyro are learned from
     sensor_yaw: float  # how the pose sensor is known to be turned on the robot [rad]
+    steered: bool = False  # a wheelbase was given with the commands
+    sideways: bool = False  # the commands drive the robot sideways
 
     @property
     def words(self) -> InputWords:

@@ -20,11 +20,12 @@ from contradictory_logs import (
     teleported,
     turned,
     with_poses,
+    with_runs,
 )
 from sample_logs import Drive, steady_run
 
 from slipwise import _core
-from slipwise.logs import Log, LogOptions, Poses, open_log
+from slipwise.logs import Inputs, Log, LogOptions, Poses, open_log
 from slipwise.logs.findings.checks import findings_in, findings_of, looked_at, seen_in
 from slipwise.logs.findings.command_stops import CommandTimeout
 from slipwise.logs.findings.seen import WholeLog
@@ -125,6 +126,41 @@ def test_a_sensor_that_is_turned_by_20_degrees_is_said_with_the_angle_and_spoils
         assert "to the right of their heading" in found.sentence
         assert "--set sensor_extrinsics.yaw=0.3" in found.advice[0]
         assert findings_of(log, name, sensor_yaw=np.radians(20.0)) == ()
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(3.6, "in km/h (28 % of m/s)"), (2.237, "in miles per hour")])
+def test_speeds_as_of_another_unit_are_said_and_spoil_nothing(factor: float, unit: str) -> None:
+    log = scaled(sound_log(), "commands", factor)
+    (found,) = findings_of(log, "command")
+    assert (found.kind, found.spoils) == ("other-unit", False)
+    assert unit in found.sentence
+    assert found.evidence == pytest.approx(0.95 / factor, rel=0.02)
+    assert findings_of(scaled(sound_log(), "commands", 3.0), "command") == ()
+
+
+def test_a_drive_that_is_capped_is_none_of_another_unit() -> None:
+    """Fast commands reach 27 % and slow ones all that is asked."""
+    capped = sound_log(replace(SKID_STEERED, speeds=(-0.4, 0.4), lag=0.0))
+
+    def asked_for_more(commands: Inputs) -> Inputs:
+        return replace(commands, v=np.where(np.abs(commands.v) > 0.2, 3.6, 1.0) * commands.v)
+
+    assert "other-unit" not in {f.kind for f in findings_of(commands_of(capped, asked_for_more), "command")}
+
+
+def commands_of(log: Log, change: Callable[[Inputs], Inputs]) -> Log:
+    """Change the commands of every run."""
+    return with_runs(log, lambda r: r if r.commands is None else replace(r, commands=change(r.commands)))
+
+
+def test_a_robot_that_turns_on_the_spot_steers_not() -> None:
+    spot = sound_log(replace(SKID_STEERED, speeds=(0.0, 0.0)))
+    (found,) = findings_of(commands_of(spot, lambda c: replace(c, wheelbase=0.5)), "command")
+    assert (found.kind, found.spoils) == ("not-steered", True)
+    assert "turns on the spot as it is commanded" in found.sentence
+    assert "wheelbase" in found.advice[0]
+    driven = sound_log(replace(SKID_STEERED, speeds=(0.3, 1.5)))
+    assert findings_of(commands_of(driven, lambda c: replace(c, wheelbase=0.5)), "command") == ()
 
 
 def test_an_arm_of_the_sensor_in_turns_to_one_side_is_not_said_to_turn_it() -> None:
