@@ -9,7 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field, create_model
 
 from slipwise.calibration.keys import key
 from slipwise.log_fields import LOG_FIELDS, About, Kind
-from slipwise.logs.options import LogOptions
+from slipwise.logs.options import LogOptions, RobotOptions
+from slipwise.logs.unheeded import OF_SOME
 
 _Finite = Annotated[float, Field(allow_inf_nan=False)]
 _Several = Annotated[list[str], Field(min_length=1)]  # further pose sources beside the first
@@ -34,7 +35,8 @@ class _Reading(BaseModel):
         own: dict[str, Any] = self.model_dump(exclude_defaults=True)
         if "columns" in given:
             given = given | {"columns": own.get("columns", {}) | given["columns"]}
-        return LogOptions.of({"unknown_after": unknown_after} | own | given)
+        kind = RobotOptions if OF_SOME & own.keys() - given.keys() else LogOptions
+        return kind.of({"unknown_after": unknown_after} | own | given)
 
 
 _UNITS = {"METRES": "m: ", "SECONDS": "s: ", "RADIANS": "rad: "}

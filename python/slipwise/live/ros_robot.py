@@ -21,6 +21,7 @@ from slipwise.live.ros_samples import FirstPoses
 from slipwise.live.ros_transport import CueTopics, RosTransport
 from slipwise.live.wires.wire import RosWire
 from slipwise.logs.options import LogOptions
+from slipwise.logs.unheeded import ROS, refuse_unheeded
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ def find_robot(  # noqa: PLR0913 (where it is, and what is known of it)
         SlipwiseError: the topics cannot be used, or the wire was closed meanwhile.
     """
     try:
+        refuse_unheeded(options, ROS)
         roles = find_roles(wire, options, say, own=f"/{name}")
         first = FirstMessages(wire, [topic for _, topic in uses_of(roles)])
         roles = with_oriented_imu(first, roles, say)

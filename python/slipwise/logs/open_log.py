@@ -24,6 +24,7 @@ from slipwise.logs.log import Floats, Inputs, Log, Poses, Run, run_name
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
 from slipwise.logs.remote import local_file
+from slipwise.logs.unheeded import kind_of, refuse_unheeded
 
 _KNOWN = (
     "give a tidy CSV, CSV.gz or Parquet file, a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder), "
@@ -44,7 +45,7 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS, **changes: Any) -
 
     Raises:
         LogError: a file is missing, damaged, of an unknown kind, or says something impossible.
-        SettingsError: there is no such option, or its value makes no sense.
+        SettingsError: there is no such option, its value makes no sense, or it would change nothing.
     """
     check_arguments(open_log, locals())
     if changes:
@@ -54,7 +55,9 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS, **changes: Any) -
     if len(paths) > 1 and options.poses is not None:
         advice = "read the logs one by one, each with its own poses"
         raise SettingsError("one file of poses goes with one log", where="--poses", advice=advice)
-    return joined([_open_one(Path(path), options) for path in paths])
+    logs = [_open_one(Path(path), options) for path in paths]
+    refuse_unheeded(options, *(kind_of(log.sources[0]) for log in logs))
+    return joined(logs)
 
 
 def _changed(options: LogOptions, changes: Mapping[str, Any]) -> LogOptions:

@@ -81,6 +81,15 @@ class LogOptions(LogFields):
         return None if described is None else described.throttle_steering
 
     @property
+    def joints_described(self) -> bool:
+        """Whether the names of the joints are those of the vehicle's description."""
+        described = self._described()
+        return described is not None and (self.left_joints, self.right_joints) == (
+            tuple(described.left_joints),
+            tuple(described.right_joints),
+        )
+
+    @property
     def files(self) -> tuple[Path, ...]:
         """Files that are read beside a log."""
         described = () if self.vehicle is None or "." not in self.vehicle else (Path(self.vehicle),)
@@ -126,6 +135,10 @@ class LogOptions(LogFields):
                 )
             if len(set(names)) < len(names):
                 raise SettingsError(f"two sources of {_option(what)} have one name", advice="name each apart")
+
+
+class RobotOptions(LogOptions):
+    """What settings of a robot say of its logs of all kinds: what one kind has nothing of may stand."""
 
 
 _SEVERAL = (Kind.topics, Kind.files)

@@ -23,6 +23,7 @@ from slipwise.logs.readings import READINGS
 from slipwise.logs.streams import INCOMPLETE, WITHOUT_FIX, believed
 from slipwise.logs.tidy import HELD_BY, UNNAMED, pose_columns
 from slipwise.logs.tidy_columns import FORCE, InputColumns, command_columns, wheel_columns
+from slipwise.logs.unheeded import LINES, refuse_unheeded
 from slipwise.logs.vocabulary import BY_NAME, measured_by
 
 HELD = "poses that repeat the one before: without a column pose_new they are held, not measured"
@@ -44,16 +45,17 @@ class RowReader:
     """Reads rows in the order in which they come.
 
     Args:
-        options: how to read them; poses of a file beside them are not read.
+        options: how to read them.
         further: names of columns that whoever calls reads himself.
 
     Raises:
-        SettingsError: a column is to have another name that no column of a tidy log has, or the offset of
-            the poses' clock is to be found.
+        SettingsError: a column is to have another name that no column of a tidy log has, the offset of
+            the poses' clock is to be found, or an option would change nothing.
     """
 
     def __init__(self, options: LogOptions, further: Sequence[str] = ()) -> None:
         check_columns(options.columns, tuple(BY_NAME))
+        refuse_unheeded(options, LINES)
         self._options, self._late = options, late_by(options)
         self._described = frozenset() if options.wheels is None else options.wheels.names
         self._further = frozenset(further)
