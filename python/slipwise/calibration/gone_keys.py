@@ -19,8 +19,10 @@ _CONSTANT = "a constant of slipwise"
 #: What holds now in place of each key. A constant that the tables still have is read for this release.
 GONE = {
     **{f"log.{name}": _OPTION + f"--{name.replace('_', '-')}" for name in (
-        "left_joints", "right_joints", "wheelbase", "wheel_scale", "pose_yaw_offset", "poses",
-        "pose_clock_offset", "start", "end",
+        "wheel_scale", "pose_yaw_offset", "poses", "pose_clock_offset", "start", "end",
+    )},
+    **{f"log.{name}": f"a key of the file of log.vehicle, or --{name.replace('_', '-')}" for name in (
+        "left_joints", "right_joints", "wheelbase",
     )},
     "log.most_unpacked": "gone: unpack a larger file first",
     "log.most_fetched": "gone: copy a larger file first",

@@ -8,7 +8,7 @@ from dataclasses import replace
 from slipwise.errors import ModelError
 from slipwise.export.actuator import Actuator, ChannelResponse
 from slipwise.export.body_limits import Gains, slip_gains
-from slipwise.export.learned_number import LearnedNumbers
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.measured_limits import MeasuredLimits, Quantity
 from slipwise.export.options import ExportOptions
 from slipwise.export.parameter_file import Entry, Kept, ParameterFile, for_release, stated
@@ -20,6 +20,7 @@ from slipwise.models.model import Model
 LONGEST_DELAY = 0.25  # of the planning horizon; a longer one leaves the controller little to decide
 _CONTROLLER = MPPI.prefix.rstrip(".")
 _DEAD_BANDS = ("VelocityDeadbandCritic", "deadband_velocities")
+_AS_COMMANDED = 0.02  # of a gain; a robot that is so close to it does what it is commanded
 _SIDES = """\
 Limits of the sides bound speed and turning together; here each is bounded as if the robot did only that.
 Where it does both, keep below them by yourself."""
@@ -134,12 +135,26 @@ def _limits(model: Model, measured: MeasuredLimits, numbers: LearnedNumbers) -> 
         "ax_min": actuator.v.objection,
         "az_max": actuator.omega.objection,
     }
+    gains = dict.fromkeys(found, measured.gains[0]) | dict.fromkeys(("wz_max", "az_max"), measured.gains[1])
     return [
         Kept((name,), objections.get(name) or limit)
         if isinstance(limit, str)
-        else stated((name,), limit.number * sign, f"[{unit}] {limit.source}", numbers)
+        else stated(
+            (name,),
+            limit.number * sign,
+            f"[{unit}] {limit.source}{_as_command(limit.number * sign, gains[name], numbers)}",
+            numbers,
+        )
         for name, (limit, sign, unit) in found.items()
     ]
+
+
+def _as_command(limit: LearnedNumber, gain: LearnedNumber, numbers: LearnedNumbers) -> str:
+    """Say of which command a limit of the body is, while the robot does not do what it is commanded."""
+    if numbers.objection(gain) or not limit.value or abs(gain.value - 1.0) < _AS_COMMANDED:
+        return ""
+    command = limit.value / gain.value
+    return f";\na command of {command:.3g} gives it: write that where the drive is not corrected"
 
 
 def _ramps(model: Model, actuator: Actuator, numbers: LearnedNumbers) -> list[list[Quantity]]:

@@ -7,6 +7,7 @@ import hashlib
 import json
 import math
 import time
+import warnings
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -17,7 +18,7 @@ import numpy as np
 from slipwise.addresses import remote_url, shown
 from slipwise.calibration import Settings, load_settings
 from slipwise.calibration.from_prior import calibrate_from
-from slipwise.errors import LogError, SlipwiseError
+from slipwise.errors import LogError, OlderNames, SlipwiseError
 from slipwise.files import sha256_of
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.knowledge_file import knowledge_text
@@ -75,7 +76,7 @@ def learn_task(task: LogTask) -> LogRows:
 
     One on a server is fetched into a temporary file, which is removed before the next is.
     """
-    settings = load_settings(Path(task.settings)) if task.settings else Settings()
+    settings = _settings_of(task)
     url = remote_url(task.path)
     if url is None:
         return _learned(task, settings, Path(task.path).stat().st_mtime)
@@ -91,6 +92,15 @@ def learn_task(task: LogTask) -> LogRows:
             return replace(_learned(there, settings, changed), tag=on_server.tag)
     except LogError as problem:
         return replace(_head(task, settings, 0.0), key="", failure=str(problem))
+
+
+def _settings_of(task: LogTask) -> Settings:
+    """Return the settings of a task; what is to be said of their file is said once, not for each log."""
+    if not task.settings:
+        return Settings()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", OlderNames)
+        return load_settings(Path(task.settings))
 
 
 def _learned(task: LogTask, settings: Settings, changed: float) -> LogRows:

@@ -112,6 +112,9 @@ def test_limits_are_written_where_they_are_asked_for_alone_and_are_what_the_pose
     assert (parameters["vx_max"], parameters["vx_min"], parameters["wz_max"]) == (1.35, -0.45, 0.7)
     assert not {"vx_max", "vx_min", "wz_max", "ax_max", "ax_min", "az_max"} & written(LATE).keys()
     assert written(LATE, replace(KILTED, limits=False)) == {"motion_model": "DiffDrive"}
+    text = export_model(make_model(LATE), "mppi", name="m", options=replace(NEW, limits=True)).text
+    for command in ("1.5", "-0.5", "1.17"):  # the body does 0.9 of the speed and 0.6 of the yaw rate
+        assert f"a command of {command} gives it: write that where the drive is not corrected" in text
     older = export_model(make_model(replace(LATE, body=None)), "mppi", name="m", options=KILTED)
     assert "calibrate again" in older.kept["FollowPath.wz_max"]
 

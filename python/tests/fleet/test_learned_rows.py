@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,7 +12,8 @@ import numpy as np
 import pytest
 from contradictory_logs import sound_log, turned
 
-from slipwise.calibration import Settings
+from slipwise.calibration import Settings, load_settings
+from slipwise.errors import OlderNames
 from slipwise.fleet import LogTask, learn_task
 from slipwise.fleet.learned_rows import key_of, log_hash, settings_hash
 from slipwise.logs import Log, save_log
@@ -63,6 +65,17 @@ def test_log_says_how_late_its_robot_is_in_all(tmp_path: Path) -> None:
     late = rows["63 % of a step of speed"]
     assert late.value == pytest.approx(0.2, abs=3.0 * late.std)
     assert 0.0 < late.std < 0.05
+
+
+def test_older_names_of_a_fleets_settings_are_not_said_again_for_each_log(tmp_path: Path) -> None:
+    path, settings = tmp_path / "log.csv", tmp_path / "fleet.toml"
+    path.write_text("t,speed\n0,1\n", encoding="utf-8")
+    settings.write_text("[log]\nwheelbase = 2.0\n", encoding="utf-8")
+    with pytest.warns(OlderNames, match=r"log.wheelbase is a key of the file of log.vehicle, or --wheelbase"):
+        load_settings(settings)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        learn_task(LogTask(str(path), "one", str(settings), log_hash(path)))
 
 
 def test_other_settings_are_another_key(tmp_path: Path) -> None:
