@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from slipwise.models.model import Model
 from slipwise.models.schema import AxisShares, Share
-from slipwise.number_text import DASH, estimate_text, number_text
+from slipwise.number_text import DASH, estimate_text, list_text, number_text
 
 AXES = {"speed": ("speed", "m/s"), "yaw_rate": ("yaw rate", "rad/s")}
 SHARE_HEAD = ("commanded", "at the body", "at the wheels", "of that on the floor")
@@ -27,7 +27,25 @@ def share_sentences(model: Model) -> list[str]:
     parts = [_of_axis(said, names[axis]) for axis, said in found.items()]
     sentences = [f"Over this log, {' and '.join(parts)} arrive."] if parts else []
     apart = [text for axis, said in found.items() for text in _out_of_proportion(said, axis, names[axis])]
-    return [*sentences, f"That is no one number: {'; '.join(apart)}."] if apart else sentences
+    if not apart:
+        return sentences
+    return [*sentences, f"That is no one number: {'; '.join(apart)}.", *_told_apart(model, found)]
+
+
+def _told_apart(model: Model, found: dict[str, AxisShares]) -> list[str]:
+    """Say which term learns one number for each way, where no limit of the drive explains two."""
+    basis, limits = model.motion.basis, model.limits_section
+    terms = {
+        axis: f"{term} in terms.{place}"
+        for axis, place, term in (("speed", "lon", "abs(V)"), ("yaw_rate", "ang", "abs(w)"))
+        if axis in found
+        and found[axis].backward is not None
+        and term not in getattr(basis, place)
+        and (limits is None or getattr(limits, axis).saturation is None)
+    }
+    if not terms or model.car is not None:
+        return []
+    return [f"A basis of yours with {list_text([*terms.values()], 'and')} learns one for each way."]
 
 
 def _out_of_proportion(said: AxisShares, axis: str, name: str) -> list[str]:

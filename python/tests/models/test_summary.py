@@ -11,6 +11,8 @@ from sample_models import LIMITS, Made, make_model, named
 
 from slipwise import _core
 from slipwise.models import Model, ModelFile
+from slipwise.models.schema import Shares
+from slipwise.models.share_words import share_sentences
 from slipwise.models.summary import summarise
 
 
@@ -197,3 +199,22 @@ def test_what_was_not_judged_or_learned_is_not_claimed() -> None:
     nothing = Made(basis=_core.Basis("none", [], [], []))
     assert str(summarise(make_model(nothing))) == "Slip is not part of this model."
     assert "Predicts" not in str(summarise(judged(follower(), windows=0)))
+
+
+def test_a_term_is_named_that_learns_one_number_for_each_way() -> None:
+    """A robot that does 95 % ahead and 70 % backward is predicted 7 times as well with it."""
+    share, back = {"value": 0.95, "std": 0.01}, {"value": 0.7, "std": 0.02}
+    axis = {"windows": 99, "arrives": share, "backward": back, "forward": share}
+    ways = Shares.model_validate({"speed": axis, "yaw_rate": axis})
+
+    def said(made: Made) -> str:
+        model = make_model(made)
+        return " ".join(share_sentences(Model(model.content.model_copy(update={"shares": ways}))))
+
+    plain = replace(named("edd-2"), commands=True)
+    both = "A basis of yours with abs(V) in terms.lon and abs(w) in terms.ang learns one for each way."
+    assert both in said(plain)
+    capped = replace(plain, limits={"speed": {"saturation": 1.0}})
+    assert "A basis of yours with abs(w) in terms.ang learns one for each way." in said(capped)
+    own = Made(_core.Basis("custom", ["V", "abs(V)"], [], ["w", "abs(w)"]), commands=True)
+    assert "A basis of yours" not in said(own)
