@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 EMPTY_CELLS = ["", "NA", "N/A", "#N/A", "null", "NULL", "None"]  # no measurement; "nan" is a faulty one
+# The same behind spaces that align columns; Arrow compares whole cells.
+_PADDED = [" " * spaces + cell for spaces in range(33) for cell in EMPTY_CELLS]
 _BLOCK = 1 << 20  # bytes
 
 
@@ -175,7 +177,7 @@ def read_csv(
         return "skip"
 
     convert = arrow_csv.ConvertOptions(
-        column_types=types, null_values=EMPTY_CELLS, strings_can_be_null=True, auto_dict_encode=True
+        column_types=types, null_values=_PADDED, strings_can_be_null=True, auto_dict_encode=True
     )
     parse = arrow_csv.ParseOptions(invalid_row_handler=skip_row)
     # A thread of Arrow that still holds `skip_row` when Python ends, as after an error, would abort it.

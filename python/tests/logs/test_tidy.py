@@ -25,6 +25,14 @@ def counts(log: Log) -> dict[str, int]:
     return {entry.kind: entry.count for entry in log.left_out}
 
 
+def test_cells_of_spaces_are_empty_as_they_are_in_lines(tmp_path: Path) -> None:
+    rows = ["0,  1.0, 0.5,          , ,", " 0.1, ,     , 0.1, 0.2,  NA", "0.2, 1.0, 0.5, 0.3, 0.2, 0"]
+    (run,) = open_log(table(tmp_path, *rows, header="t,cmd_v,cmd_omega,x,y,yaw")).runs
+    assert run.commands is not None
+    np.testing.assert_array_equal(run.commands.t, [0.0, 0.2])
+    np.testing.assert_array_equal(run.poses.t, [0.2])
+
+
 def test_empty_cells_are_no_measurement_and_not_counted(tmp_path: Path) -> None:
     log = open_log(table(tmp_path, "0,1,0.5,,,,0", "0.1,,,0,0,0,1", "0.2,2,0,,,,0", "0.3,,,0.1,0,0,1"))
     (run,) = log.runs

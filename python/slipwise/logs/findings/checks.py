@@ -39,6 +39,7 @@ from slipwise.logs.findings.sources import IdleSource, TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
 from slipwise.logs.findings.steering import NotSteered, driven_sideways, steered
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
+from slipwise.logs.findings.untold_turns import UntoldTurns
 from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log, Run, has_course
@@ -64,6 +65,7 @@ THEN: tuple[Check, ...] = (
     RepeatedWheels(),
     WheelSize(),
     OtherUnit(),
+    UntoldTurns(),
     Unrelated(),
 )
 #: What only a whole log shows.
