@@ -39,6 +39,7 @@ from slipwise.models.schema import ModelFile, Range
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+_NOTHING = "push inputs and poses of some seconds first; events() says what was rejected, and why"
 _LENGTH_BYTES = 8  # of what stands before the core's bytes
 
 
@@ -211,9 +212,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         """
         model = self._core.model()
         if model.segments == 0:
-            raise SettingsError(
-                "nothing was learned yet", advice="push inputs and poses of some seconds first"
-            )
+            raise SettingsError("nothing was learned yet", advice=_NOTHING)
         learned = self._learned(model, limits=limits)
         if log is not None:
             made, judgement = model_of_log(learned, log, self._input, self._settings, self._start)

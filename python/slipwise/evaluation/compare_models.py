@@ -54,13 +54,15 @@ class ModelComparison:
                 f"The log is too short to say whether {self.new} predicts better than {self.old}: it has "
                 f"{match.windows} segments of {match.horizon:g} s."
             )
+        winner = self._winner()
+        whose = f"{self.new}'s" if winner.startswith("Neither") else "its"
         parts = [
-            f"its {name} error is {_text(ratio)} times that of {self.old}"
+            f"{whose} {name} error is {_text(ratio)} times that of {self.old}"
             for name, ratio in (("position", match.position), ("heading", match.heading))
             if not math.isnan(ratio[0])
         ]
         figures = f"after {match.horizon:g} s {' and '.join(parts) or 'neither misses'}"
-        return f"{self._winner()}: {figures} ({match.windows} segments, 95 % intervals)."
+        return f"{winner}: {figures} ({match.windows} segments, 95 % intervals)."
 
     def _winner(self) -> str:
         match = self.decisive

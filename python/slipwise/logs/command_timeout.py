@@ -46,4 +46,4 @@ def _ended(commands: Inputs, seconds: float, last: float) -> tuple[Inputs, int]:
     order = np.argsort(t, kind="stable")
     none = np.zeros(len(added))
     v, vy, omega = (np.concatenate((c, none))[order] for c in (commands.v, commands.vy, commands.omega))
-    return replace(commands, t=t[order], v=v, vy=vy, omega=omega), len(zeros)
+    return replace(commands, t=t[order], v=v, vy=vy, omega=omega, ended=True), len(zeros)

@@ -80,6 +80,7 @@ class Inputs(_Series):
     omega: Floats  # [N] rad/s, counter-clockwise
     car: CarCommands | None = None  # throttle and steering, where v and omega are about what they do
     wheelbase: float | None = None  # m, of commands to a robot that steers
+    ended: bool = False  # zeros stand among them where a watchdog ended one, as was given
 
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "v", "vy", "omega"))
@@ -283,7 +284,7 @@ def _check_series(series: Inputs | Poses | Forces, *, required: tuple[str, ...])
     for column in (
         column
         for column in fields(series)
-        if column.init and column.name not in ("course", "car", "wheelbase")
+        if column.init and column.name not in ("course", "car", "wheelbase", "ended")
     ):
         values = getattr(series, column.name)
         if values is None:

@@ -85,7 +85,7 @@ class IdleSource(TwoSources):
             return None
         zeros, moves, asked, done, place = 0, 0, 0.0, 0.0, ""
         for run in whole.log.runs:
-            if run.commands is None or len(run.commands) < 2:
+            if run.commands is None or len(run.commands) < 2 or run.commands.ended:
                 continue
             driver = run.commands.select((run.commands.twists() != 0.0).any(axis=1))
             at = _interrupted(run.commands, driver)

@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from slipwise.logs import Inputs, Poses
+from slipwise.logs import Inputs, Poses, open_log
+from slipwise.logs.findings.checks import findings_of
 from slipwise.logs.findings.command_stops import CommandStops
 from slipwise.logs.findings.commanded_motion import CommandedMotion
 from slipwise.logs.log import Floats
@@ -58,3 +61,21 @@ def test_parts_have_all_steps_and_the_command_in_force() -> None:
     assert all(each.t[0] <= each.start[0] for each in parts)
     assert parts[-1].t[-1] == motion.t[-1]
     assert max(each.seconds for each in parts) < 30.2
+
+
+def test_zeros_of_a_watchdog_that_was_given_are_no_second_source(tmp_path: Path) -> None:
+    """A robot that is commanded every second stops after half of it: `--command-timeout` was advised."""
+    t = np.arange(0.0, 120.0, 0.05)
+    speed = np.where(t // 10.0 % 2.0 == 0.0, 0.8, 0.5)
+    x = np.cumsum(0.05 * np.where(t % 1.0 < 0.5, speed, 0.0))
+    given = np.isclose(t % 1.0, 0.0, atol=1e-6) | np.isclose(t % 1.0, 1.0, atol=1e-6)
+    rows = [
+        f"{at:.2f},{f'{v},0' if told else ','},{place:.4f},0,0"
+        for at, v, told, place in zip(t.tolist(), speed.tolist(), given.tolist(), x.tolist(), strict=True)
+    ]
+    path = tmp_path / "rare.csv"
+    path.write_text("t,cmd_v,cmd_omega,x,y,yaw\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    (found,) = findings_of(open_log(path), "command")
+    assert found.kind == "command-timeout"
+    assert found.evidence == pytest.approx(0.5, abs=0.051)
+    assert findings_of(open_log(path, command_timeout=0.5), "command") == ()
