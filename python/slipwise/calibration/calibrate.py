@@ -42,7 +42,7 @@ from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.logs.findings.checks import findings_in, findings_of_log
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import Seen, WholeLog
-from slipwise.logs.findings.steering import driven_sideways, steered
+from slipwise.logs.findings.steering import by_throttle, driven_sideways, steered
 from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Log, has_course
 from slipwise.logs.motion_windows import evidence_of
@@ -164,6 +164,7 @@ def found_contradictions(
         sensor_yaw=settings.sensor_extrinsics.yaw,
         steered=steered(log.runs),
         sideways=driven_sideways(log.runs),
+        throttle=by_throttle(log.runs),
     )
     unknown_after = settings.segment.unknown_after
     return (

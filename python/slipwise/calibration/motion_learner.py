@@ -269,6 +269,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         return not_shown_yet(self._seen(self._core.model().evidence))
 
     def _seen(self, evidence: _core.MotionEvidence) -> Seen:
+        throttle = car_of(self._settings) is not None
         return Seen(
             evidence=evidence,
             runs=self._runs,
@@ -276,7 +277,8 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             positions=self._positions,
             gyro=self._positions or self._gyro_alone,
             sensor_yaw=self._settings.sensor_extrinsics.yaw,
-            steered=bool(self._wheelbase) and car_of(self._settings) is None,
+            steered=bool(self._wheelbase) and not throttle,
+            throttle=throttle,
             sideways=self._sideways["command"].span is not None,
         )
 

@@ -50,9 +50,7 @@ def refuse_unheeded(options: LogOptions, *kinds: str) -> None:
         if name in _WHOLE:
             advice = "calibrate a recording with it"
         elif name == "pose_topic" and kinds[0] in (TABLE, LINES):
-            advice = (
-                "leave it away; poses are x, y and yaw (--columns), their sources told by a column source"
-            )
+            advice = "leave it away; poses are x, y and yaw (--columns), a column source names their sources"
         elif kinds[0] in (TABLE, LINES):
             advice = "leave it away; --columns names columns"
         raise SettingsError(f"{kinds[0]} has nothing that it would choose", where=about.option, advice=advice)

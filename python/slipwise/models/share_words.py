@@ -29,10 +29,10 @@ def share_sentences(model: Model) -> list[str]:
     apart = [text for axis, said in found.items() for text in _out_of_proportion(said, axis, names[axis])]
     if not apart:
         return sentences
-    return [*sentences, f"That is no one number: {'; '.join(apart)}.", *_told_apart(model, found)]
+    return [*sentences, f"That is no one number: {'; '.join(apart)}.", *_term_for_each_way(model, found)]
 
 
-def _told_apart(model: Model, found: dict[str, AxisShares]) -> list[str]:
+def _term_for_each_way(model: Model, found: dict[str, AxisShares]) -> list[str]:
     """Say which term learns one number for each way, where no limit of the drive explains two."""
     basis, limits = model.motion.basis, model.limits_section
     terms = {

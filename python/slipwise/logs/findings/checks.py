@@ -27,6 +27,7 @@ from slipwise.logs.findings.headings import (
     UnlikelySpeed,
 )
 from slipwise.logs.findings.late_answers import LateAnswers
+from slipwise.logs.findings.missing_turns import MissingTurns
 from slipwise.logs.findings.plausibility import ENOUGH, ENOUGH_TURN, Implausible, UnreachablePoses
 from slipwise.logs.findings.pose_streams import ClockOffset, FrozenPoses
 from slipwise.logs.findings.readings import READINGS
@@ -37,9 +38,8 @@ from slipwise.logs.findings.sensor_place import SensorOffCentre
 from slipwise.logs.findings.source_scale import SourceScale
 from slipwise.logs.findings.sources import IdleSource, TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
-from slipwise.logs.findings.steering import NotSteered, driven_sideways, steered
+from slipwise.logs.findings.steering import NotSteered, by_throttle, driven_sideways, steered
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
-from slipwise.logs.findings.untold_turns import UntoldTurns
 from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log, Run, has_course
@@ -65,7 +65,7 @@ THEN: tuple[Check, ...] = (
     RepeatedWheels(),
     WheelSize(),
     OtherUnit(),
-    UntoldTurns(),
+    MissingTurns(),
     Unrelated(),
 )
 #: What only a whole log shows.
@@ -207,6 +207,7 @@ def seen_in(
         sensor_yaw=sensor_yaw,
         steered=steered(runs),
         sideways=driven_sideways(runs),
+        throttle=by_throttle(runs),
     )
 
 

@@ -166,7 +166,9 @@ class OtherUnit(Check):
         turns, w = seen.agreement(seen.input_name), seen.windows
         asked = np.hypot(w.forward, w.sideways)
         along = (asked > _LEAST) & (np.abs(w.rotation) < MOST_TURN) & (np.abs(w.turn) < MOST_TURN)
-        if seen.input_name != "command" or not _agree(seen.driven) or along.sum() < _ENOUGH_OF_EACH:
+        if seen.input_name != "command" or seen.throttle or along.sum() < _ENOUGH_OF_EACH:
+            return None
+        if not _agree(seen.driven):
             return None
         asked, done = asked[along], (w.distance[along] / asked[along])
         slow = asked <= np.median(asked)

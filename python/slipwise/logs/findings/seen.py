@@ -54,6 +54,7 @@ class Seen:
     sensor_yaw: float  # how the pose sensor is known to be turned on the robot [rad]
     steered: bool = False  # a wheelbase was given with the commands
     sideways: bool = False  # the commands drive the robot sideways
+    throttle: bool = False  # they are throttle and steering, which have no units
 
     @property
     def words(self) -> InputWords:

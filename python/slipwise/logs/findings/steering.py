@@ -61,6 +61,11 @@ def steered(runs: Iterable[Run]) -> bool:
     return any(run.commands is not None and run.commands.wheelbase is not None for run in runs)
 
 
+def by_throttle(runs: Iterable[Run]) -> bool:
+    """Whether the commands of some run are throttle and steering."""
+    return any(run.commands is not None and run.commands.car is not None for run in runs)
+
+
 def driven_sideways(runs: Iterable[Run]) -> bool:
     """Whether the commands of some run drive the robot sideways."""
     given = (run.commands for run in runs if run.commands is not None)

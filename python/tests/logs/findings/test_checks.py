@@ -157,12 +157,12 @@ def test_a_robot_whose_turns_are_not_in_its_inputs_is_no_robot_without_a_heading
     log = sound_log(replace(SKID_STEERED, seconds=120.0))
     straight = commands_of(log, lambda c: replace(c, omega=0.0 * c.omega))
     (found,) = (each for each in findings_of(straight, "command") if each.spoils)
-    assert found.kind == "untold-turns"
+    assert found.kind == "missing-turns"
     assert "the commands drive straight on while the robot turns to the left by" in found.sentence
     assert findings_of(straight, "wheel") == ()
     veering = Drive(seconds=120.0, yaw_rates=(0.0, 0.0), basis=_core.Basis("v", ["V"], [], ["V"]))
     found_veering = findings_of(sound_log(replace(veering, alpha=(-0.05, 0.4))), "command")
-    assert "untold-turns" not in {each.kind for each in found_veering}
+    assert "missing-turns" not in {each.kind for each in found_veering}
 
 
 def test_a_robot_that_turns_on_the_spot_steers_not() -> None:

@@ -70,8 +70,8 @@ def test_zeros_of_a_watchdog_that_was_given_are_no_second_source(tmp_path: Path)
     x = np.cumsum(0.05 * np.where(t % 1.0 < 0.5, speed, 0.0))
     given = np.isclose(t % 1.0, 0.0, atol=1e-6) | np.isclose(t % 1.0, 1.0, atol=1e-6)
     rows = [
-        f"{at:.2f},{f'{v},0' if told else ','},{place:.4f},0,0"
-        for at, v, told, place in zip(t.tolist(), speed.tolist(), given.tolist(), x.tolist(), strict=True)
+        f"{at:.2f},{f'{v},0' if said else ','},{place:.4f},0,0"
+        for at, v, said, place in zip(t.tolist(), speed.tolist(), given.tolist(), x.tolist(), strict=True)
     ]
     path = tmp_path / "rare.csv"
     path.write_text("t,cmd_v,cmd_omega,x,y,yaw\n" + "\n".join(rows) + "\n", encoding="utf-8")

@@ -17,10 +17,10 @@ _EACH_WAY = 3.0  # [rad] by the poses in such windows, to either side; who veers
 _NONE = 0.02  # of these turns, by the inputs
 
 
-class UntoldTurns(Check):
+class MissingTurns(Check):
     """Inputs that drive straight on while the robot turns both ways."""
 
-    kind, family = "untold-turns", "topics"
+    kind, family = "missing-turns", "topics"
     means = "the yaw rate is not in the inputs: a column of zeros, or a topic of its own steers the robot"
     shows = "poses turn by 3 rad and more to both sides, inputs by less than 2 % of that"
     cure = "record the topic that steers, or fill the column (`cmd_omega`, `cmd_steer`, `odo_omega`)"
@@ -33,8 +33,8 @@ class UntoldTurns(Check):
             return None
         turns = (np.where(w.forward < 0.0, -1.0, 1.0) * w.turn)[np.abs(w.turn) > _TURN]
         left, right = float(turns[turns > 0.0].sum()), float(-turns[turns < 0.0].sum())
-        told = float(np.abs(w.rotation).sum())
-        if min(left, right) < _EACH_WAY or told > _NONE * (left + right):
+        given = float(np.abs(w.rotation).sum())
+        if min(left, right) < _EACH_WAY or given > _NONE * (left + right):
             return None
         return self.found(
             f"the {seen.words.name} drive straight on while the robot turns to the left by {left:.0f} rad "
