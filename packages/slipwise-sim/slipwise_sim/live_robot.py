@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from slipwise.errors import SettingsError
 from slipwise_sim.land_tamer import wheel_names
 from slipwise_sim.physics import LONGEST_STEP, World, planar_truth, start_physics
 from slipwise_sim.truth import Truth
-from slipwise_sim.tyre_law import TyreLaw, tyre_force
+from slipwise_sim.tyre_law import TyreLaw, tyre_forces
 
 
 @dataclass(frozen=True)
@@ -93,7 +92,7 @@ class LiveRobot:
         if self._physics.tyres is None:
             advice = 'use the terrain "tyre-force"'
             raise SettingsError("a contact-friction terrain cannot change", where="terrain", advice=advice)
-        self._physics.tyres.law = partial(tyre_force, law)
+        self._physics.tyres.law = tyre_forces(law)
 
     def _truth(self) -> Truth:
         velocity = self._physics.data.qvel[None].copy()

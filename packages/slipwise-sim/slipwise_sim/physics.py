@@ -21,7 +21,7 @@ from slipwise_sim.land_tamer import LandTamer, mjcf, wheel_names
 from slipwise_sim.push import Push, StuckWheel
 from slipwise_sim.traction_law import TractionLaw, traction_force
 from slipwise_sim.truth import Truth
-from slipwise_sim.tyre_law import ForceLaw, TyreForceTerrain, TyreLaw, tyre_force
+from slipwise_sim.tyre_law import ForceLaw, TyreForceTerrain, TyreLaw, tyre_forces
 
 TERRAINS = ("tyre-force", "traction-law", "contact-friction")
 LONGEST_STEP = 0.002  # [s] short enough for smooth contact friction; tyre forces alone would allow 0.005
@@ -58,7 +58,7 @@ class World:
             return None
         if self.terrain == "traction-law":
             return partial(traction_force, self.traction)
-        return partial(tyre_force, self.law)
+        return tyre_forces(self.law)
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ def start_physics(world: World, time_step: float) -> Physics:
         advice = "use values nearer the defaults"
         raise SettingsError("MuJoCo refuses the vehicle", where=str(error), advice=advice) from error
     data = mujoco.MjData(model)
-    tyres = None if force_law is None else TyreForceTerrain(force_law, world.vehicle, model)
+    tyres = None if force_law is None else TyreForceTerrain(force_law, world.vehicle, model, data)
     advance = _stepper(mujoco, model, data, tyres)
     for _ in range(math.ceil(SETTLING_TIME / time_step)):
         advance()
@@ -163,7 +163,7 @@ def run_physics(
     for sample in range(sampling.count):
         position[sample], velocity[sample] = data.qpos, data.qvel
         if change is not None and tyres is not None and sample == changes_at:
-            tyres.law = partial(tyre_force, change.law)
+            tyres.law = tyre_forces(change.law)
         for target in targets[sample * sampling.steps : (sample + 1) * sampling.steps]:
             data.ctrl = target
             if push is not None:
@@ -204,7 +204,7 @@ def _stepper(mujoco: Any, model: Any, data: Any, tyres: TyreForceTerrain | None)
 
     def advance() -> None:
         step1(model, data)
-        apply(data)
+        apply()
         step2(model, data)
 
     return advance

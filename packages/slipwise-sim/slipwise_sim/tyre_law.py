@@ -46,53 +46,74 @@ def tyre_force(
     Returns:
         Forward and leftward force [N], shape [2, wheels].
     """
-    forward = patch_velocity[0]
-    reference = np.maximum(np.maximum(np.abs(forward), np.abs(rim_speed)), law.creep_speed)
-    slip = np.empty_like(patch_velocity)
-    slip[0] = law.slip_stiffness * (rim_speed - forward)
-    slip[1] = -law.cornering_stiffness * patch_velocity[1]
-    slip /= reference
-    size = np.sqrt(slip[0] * slip[0] + slip[1] * slip[1]) + 1e-9
-    force: NDArray[np.float64] = slip * (law.friction * load * np.tanh(size) / size)
-    force[0] -= law.rolling_resistance * load * np.tanh(forward / law.drag_speed)
+    return tyre_forces(law)(load, patch_velocity, rim_speed)
+
+
+def tyre_forces(law: TyreLaw) -> ForceLaw:
+    """Return `tyre_force` of a terrain: most of a simulation is spent in it, so its constants are arrays."""
+    friction, creep, drag_speed = map(np.array, (law.friction, law.creep_speed, law.drag_speed))
+    resistance, ahead, aside = map(
+        np.array, (law.rolling_resistance, law.slip_stiffness, -law.cornering_stiffness)
+    )
+    tiny = np.array(1e-9)
+
+    def force(
+        load: NDArray[np.float64], patch_velocity: NDArray[np.float64], rim_speed: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        forward = patch_velocity[0]
+        reference = np.maximum(np.maximum(np.abs(forward), np.abs(rim_speed)), creep)
+        slip = np.empty_like(patch_velocity)
+        np.multiply(ahead, rim_speed - forward, slip[0])
+        np.multiply(aside, patch_velocity[1], slip[1])
+        np.divide(slip, reference, slip)
+        squares = slip * slip
+        size = np.sqrt(squares[0] + squares[1]) + tiny
+        np.multiply(slip, friction * load * np.tanh(size) / size, slip)
+        drag = resistance * load * np.tanh(forward / drag_speed)
+        np.subtract(slip[0], drag, slip[0])
+        return slip
+
     return force
 
 
 class TyreForceTerrain:
     """Applies a law of force to a MuJoCo model of the vehicle; call `apply` between mj_step1 and mj_step2."""
 
-    def __init__(self, law: ForceLaw, vehicle: LandTamer, model: Any) -> None:
+    def __init__(self, law: ForceLaw, vehicle: LandTamer, model: Any, data: Any) -> None:
         """Look up where the vehicle's parts are in the model's arrays.
 
         Args:
             law: the force of the terrain on each wheel.
             vehicle: the constants.
             model: the mujoco.MjModel made from `land_tamer.mjcf`, with frictionless contacts.
+            data: its mujoco.MjData, whose arrays stay where they are.
         """
         names = wheel_names(vehicle)
         self.law = law  # may be replaced while driving: another terrain
-        self._radius = vehicle.wheel_radius
-        self._hull = model.body("hull").id
-        bodies = [model.body(f"wheel_{name}").id for name in names]
-        self._bodies = slice(bodies[0], bodies[-1] + 1)
-        self._spins = np.array([model.joint(f"spin_{name}").dofadr[0] for name in names])
+        self._radius = np.array(vehicle.wheel_radius)
+        self._arms = np.array([[-vehicle.wheel_radius], [vehicle.wheel_radius]])
         self._patch_jacobian = _patch_jacobian(vehicle)
+        first = model.body(f"wheel_{names[0]}").id
+        spins = [model.joint(f"spin_{name}").dofadr[0] for name in names]
+        self._loads, self._forces = data.sensordata, data.xfrc_applied[first : first + len(names)]
+        self._axes = data.xmat[model.body("hull").id].reshape(3, 3)
+        self._velocity, self._turning = data.qvel[:3], data.qvel[3:6]
+        self._spins = data.qvel[spins[0] : spins[-1] + 1 : spins[1] - spins[0]]
+        self._twist, self._wrenches = np.empty(6), np.empty((2, 6))
 
-    def apply(self, data: Any) -> None:
-        """Write the terrain's forces on the wheels into `data.xfrc_applied`.
+    def apply(self) -> None:
+        """Write the terrain's forces on the wheels into `xfrc_applied`.
 
         The loads are those of the previous step (the solver has not run in this one yet); all else is new.
         """
-        axes = data.xmat[self._hull].reshape(3, 3)
-        velocity = data.qvel
-        twist = np.concatenate((velocity[:3] @ axes, velocity[3:6]))
-        patch_velocity = (self._patch_jacobian @ twist).reshape(2, -1)
-        rim_speed = velocity[self._spins] * self._radius
-        force = self.law(data.sensordata, patch_velocity, rim_speed)
-        forward, left = axes[:, 0], axes[:, 1]
-        arm = self._radius
-        wrenches = np.concatenate((forward, -arm * left, left, arm * forward)).reshape(2, 6)
-        data.xfrc_applied[self._bodies] = force.T @ wrenches
+        twist, wrenches, axes = self._twist, self._wrenches, self._axes
+        np.dot(self._velocity, axes, twist[:3])
+        twist[3:] = self._turning
+        patch_velocity = self._patch_jacobian.dot(twist).reshape(2, -1)
+        force = self.law(self._loads, patch_velocity, self._spins * self._radius)
+        wrenches[:, :3] = axes.T[:2]  # forward and left
+        np.multiply(self._arms, axes.T[1::-1], wrenches[:, 3:])
+        np.dot(force.T, wrenches, self._forces)
 
 
 def _patch_jacobian(vehicle: LandTamer) -> NDArray[np.float64]:

@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import mujoco
 import numpy as np
 import pytest
 
 from slipwise_sim.land_tamer import LandTamer, mjcf
-from slipwise_sim.tyre_law import TyreForceTerrain, TyreLaw, tyre_force
+from slipwise_sim.tyre_law import TyreForceTerrain, TyreLaw, tyre_force, tyre_forces
 
 LAW = TyreLaw()
 LOAD = np.full(1000, 1600.0)
@@ -69,7 +67,7 @@ def test_forces_act_at_the_contact_patches() -> None:
     mujoco.mj_step(model, data, nstep=1000)
     data.qvel[0] = 2.0
     mujoco.mj_step1(model, data)
-    TyreForceTerrain(partial(tyre_force, LAW), vehicle, model).apply(data)
+    TyreForceTerrain(tyre_forces(LAW), vehicle, model, data).apply()
     wrench = data.xfrc_applied[model.body("wheel_l1").id]
     assert wrench[0] == pytest.approx(-(LAW.friction + LAW.rolling_resistance) * 1635.0, rel=1e-3)
     np.testing.assert_allclose(np.delete(wrench, [0, 4]), 0, atol=1.0)
@@ -84,7 +82,7 @@ def test_yawing_hull_drags_the_outer_wheels_sideways() -> None:
     mujoco.mj_step(model, data, nstep=1000)
     data.qvel[5] = 1.0
     mujoco.mj_step1(model, data)
-    TyreForceTerrain(partial(tyre_force, LAW), vehicle, model).apply(data)
+    TyreForceTerrain(tyre_forces(LAW), vehicle, model, data).apply()
     left_force = {name: data.xfrc_applied[model.body(f"wheel_{name}").id, 1] for name in ("l0", "l1", "l2")}
     assert left_force["l0"] < -500
     assert left_force["l2"] > 500
