@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from slipwise import _core
-from slipwise.logs.log import Floats, Run
+from slipwise.logs.log import Floats, Inputs, Poses, Run
 
 _KNOWN_PART = 0.9  # of a window's time, inputs must be known
 _POSES = 9  # columns of the core's rows that tell of poses; 4 of the commands and 4 of the wheels follow
@@ -63,9 +64,16 @@ def evidence_of(runs: Iterable[Run], unknown_after: float) -> _core.MotionEviden
 
     An input is unknown once it is older than `unknown_after` [s].
     """
+    return _evidence(tuple((run.commands, run.wheels, run.poses.as_measured) for run in runs), unknown_after)
+
+
+@lru_cache(maxsize=1)  # whoever reads a log looks at it, and whoever judges it afterwards does again
+def _evidence(
+    streams: tuple[tuple[Inputs | None, Inputs | None, Poses], ...], unknown_after: float
+) -> _core.MotionEvidence:
     settings = _core.StreamSettings()
     settings.unknown_after, settings.horizons = unknown_after, []
-    return _core.motion_evidence(settings, [_recording(run) for run in runs])
+    return _core.motion_evidence(settings, [_recording(*each) for each in streams])
 
 
 def measured_rows(runs: Iterable[Run], unknown_after: float) -> Floats:
@@ -88,9 +96,9 @@ def _slower(run: Run, factor: float) -> Run:
     return replace(run, commands=commands, wheels=wheels)
 
 
-def _recording(run: Run) -> _core.Recording:
-    commands, wheels = (np.empty((0, 4)) if i is None else i.rows() for i in (run.commands, run.wheels))
-    return _core.Recording(commands, wheels, np.empty((0, 3)), run.poses.as_measured.rows())
+def _recording(commands: Inputs | None, wheels: Inputs | None, poses: Poses) -> _core.Recording:
+    given, measured = (np.empty((0, 4)) if i is None else i.rows() for i in (commands, wheels))
+    return _core.Recording(given, measured, np.empty((0, 3)), poses.rows())
 
 
 def wrapped(angle: Floats, turn: float = 2.0 * np.pi) -> Floats:

@@ -105,16 +105,14 @@ class Driven:
     first: float  # [s]
     last: float
     given: HeldSum  # says when the inputs are known
-    speed: HeldSum
-    rate: HeldSum
+    motion: HeldSum  # of speeds, and of yaw rates as imaginary parts: both are looked up at once
 
     @classmethod
     def of(cls, inputs: Inputs, lag: float, unknown_after: float) -> Driven:
         """Sum inputs, as a drive with a time constant of `lag` [s] follows them."""
         part, given = _lagged(inputs, lag), HeldSum.of(inputs, inputs.v, unknown_after)
-        speed = HeldSum.of(part, np.hypot(part.v, part.vy), unknown_after)
-        rate = HeldSum.of(part, part.omega, unknown_after)
-        return cls(float(inputs.t[0]), float(inputs.t[-1]), given, speed, rate)
+        motion = HeldSum.of(part, np.hypot(part.v, part.vy) + 1j * part.omega, unknown_after)
+        return cls(float(inputs.t[0]), float(inputs.t[-1]), given, motion)
 
 
 def agreement_at(inputs: Sequence[Inputs], motion: PoseMotion, offset: float, unknown_after: float) -> float:
@@ -230,8 +228,8 @@ def input_means(drive: Sequence[Driven], start: Floats, stop: Floats) -> tuple[F
     speed, rate = np.full(len(start), np.nan), np.full(len(start), np.nan)
     for part in drive:
         known = part.given.known(start, stop) > _KNOWN * (stop - start) + _core.SAME_STAMP
-        for sums, out in ((part.speed, speed), (part.rate, rate)):
-            out[known] = sums.between(start[known], stop[known]) / (stop - start)[known]
+        moved, seconds = part.motion.between(start[known], stop[known]), (stop - start)[known]
+        speed[known], rate[known] = moved.real / seconds, moved.imag / seconds
     return speed, rate
 
 

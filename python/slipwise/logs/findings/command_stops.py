@@ -221,11 +221,14 @@ def _answers(piece: CommandedMotion, channel: int, near: Bools) -> Iterator[Floa
     held = np.searchsorted(piece.t, middle, side="right") - 1
     age, asked = middle - piece.t[held], piece.given[held, channel]
     follows = 1.0 - np.exp(-_STEP / _LAGS)
-    speed, way = np.zeros((len(_WAITS), len(_LAGS))), np.zeros((len(grid) + 1, len(_WAITS), len(_LAGS)))
-    for k, (seconds, value) in enumerate(zip(age.tolist(), asked.tolist(), strict=True)):
-        before = speed
-        speed = before + follows * (np.where(seconds <= _WAITS, value, 0.0)[:, None] - before)
-        way[k + 1] = way[k] + 0.5 * _STEP * (before + speed)
+    given = np.where(age[:, None] <= _WAITS, asked[:, None], 0.0)[:, :, None]
+    speed = np.zeros((len(grid) + 1, len(_WAITS), len(_LAGS)))
+    for before, after, aim in zip(speed[:-1], speed[1:], given, strict=True):
+        np.subtract(aim, before, out=after)
+        after *= follows
+        after += before
+    way = np.zeros_like(speed)
+    np.cumsum(0.5 * _STEP * (speed[:-1] + speed[1:]), axis=0, out=way[1:])
     start, stop = piece.start[near], piece.stop[near]
     for delay in _DELAYS:
         first, last = (_index(each - delay - piece.t[0], len(grid)) for each in (start, stop))

@@ -7,7 +7,7 @@ import itertools
 import math
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -47,7 +47,6 @@ class TwoSources(Check):
 
     kind, family, spoils = "two-sources", "topics", False
     hidden_by = ("wheel-spikes",)  # that come often look like a second source
-    of_input = True
     means = (
         "two nodes publish on one topic: two robots, two localisers, a controller and a filter, a driver and "
         "one that idles (from such commands no model is good)"
@@ -144,10 +143,10 @@ class _Course:
     number: int  # of the last value on it
 
 
-@dataclass(frozen=True)
-class _Assigned:
+class _Assigned(NamedTuple):
     first: bool  # which course it is on
-    own: float  # how far from that, in units of `far`
+    turned: bool  # whether the value before it is on the other one
+    own: float  # how far from its course, in units of `far`
     other: float
 
 
@@ -163,7 +162,7 @@ class SourceWatch:
         self._far, self._relative = far, relative
         self._courses: list[_Course] = []
         self._assigned: deque[_Assigned] = deque(maxlen=LOOKED_AT)
-        self._count = 0
+        self._count, self._turns = 0, 0  # values, and those of `_assigned` behind one on the other course
         self._until = -math.inf
 
     def take(self, t: float, values: tuple[float, ...]) -> bool:
@@ -191,10 +190,12 @@ class SourceWatch:
 
     def _assign(self, value: tuple[float, ...]) -> None:
         far = [max(least, self._relative * abs(each)) for least, each in zip(self._far, value, strict=True)]
-        apart = [
-            max(abs(a - b) / most for a, b, most in zip(value, course.value, far, strict=True))
-            for course in self._courses
-        ]
+        apart = []
+        for course in self._courses:
+            most = 0.0
+            for one, other, usual in zip(value, course.value, far, strict=True):
+                most = max(most, abs(one - other) / usual)
+            apart.append(most)
         if len(apart) < 2 and (not apart or apart[0] > 1.0):
             self._courses.append(_Course(value, self._count))
             return
@@ -203,13 +204,21 @@ class SourceWatch:
             nearer = int(self._courses[0].number > self._courses[1].number)
         self._courses[nearer] = _Course(value, self._count)
         if len(apart) == 2:
-            self._assigned.append(_Assigned(nearer == 0, apart[nearer], apart[1 - nearer]))
+            self._note(nearer == 0, apart[nearer], apart[1 - nearer])
+
+    def _note(self, first: bool, own: float, other: float) -> None:
+        """Keep what a value was assigned to, and how often the newest ones took turns."""
+        newest = self._assigned
+        if len(newest) == LOOKED_AT:
+            self._turns -= newest[1].turned
+        newest.append(_Assigned(first, bool(newest) and newest[-1].first != first, own, other))
+        self._turns += newest[-1].turned
 
     def _two(self) -> bool:
         """Whether the courses take turns, and each is followed far more closely than the other is near."""
-        left = [b.other for a, b in itertools.pairwise(self._assigned) if a.first != b.first]
-        if len(left) < FEWEST:
+        if self._turns < FEWEST:
             return False
+        left = [before.other for before, after in itertools.pairwise(self._assigned) if after.turned]
         own = np.array([each.own for each in self._assigned])
         followed = float(np.quantile(own, 0.9)) <= 0.5
         return followed and bool(np.median(left) > max(2.0, APART * float(np.quantile(own, 0.75))))
