@@ -143,5 +143,7 @@ class Dynamics:
                 f"`rates` returned {len(found)} rates for {len(self.states)} states",
                 advice="return one for each state, in their order",
             )
-        columns = states.shape[1]
-        return np.stack([np.broadcast_to(np.asarray(rate, dtype=np.float64), (columns,)) for rate in found])
+        rates = np.empty(states.shape)
+        for row, rate in zip(rates, found, strict=True):
+            row[:] = rate
+        return rates
