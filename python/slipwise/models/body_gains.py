@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,11 +68,20 @@ def turning_twists(model: Model, radius: float) -> BodyTwists:
 
 def _twists(model: Model, v: Floats, w: Floats, vy: Floats | None = None) -> BodyTwists:
     basis = model.motion.basis
-    channel = np.repeat(np.arange(3), (len(basis.lon), len(basis.lat), len(basis.ang)))
-    features = np.zeros((len(v), 3, basis.size))
     left = np.zeros_like(v) if vy is None else vy
     drive = np.column_stack((v, left, w))
-    for i, (ahead, side, rate) in enumerate(drive.tolist()):
-        state = _core.SlipState(ahead, rate, 0.0, 0.0, side)
-        features[i, channel, np.arange(basis.size)] = basis.features(state)
+    terms = tuple(basis.lon), tuple(basis.lat), tuple(basis.ang)
+    features = _features(terms, drive.tobytes())
     return BodyTwists(v, left, w, drive + features @ model.mean[: basis.size], features)
+
+
+@lru_cache(maxsize=4)  # a live node asks again and again over one range
+def _features(terms: tuple[tuple[str, ...], ...], drive: bytes) -> Floats:
+    """Return features of terms on each axis, [N, 3, slip parameters], at rows of a drive, [N, 3] as bytes."""
+    rows, basis = np.frombuffer(drive).reshape(-1, 3), _core.Basis("", *terms)
+    channel = np.repeat(np.arange(3), [len(each) for each in terms])
+    features = np.zeros((len(rows), 3, basis.size))
+    for found, (ahead, side, rate) in zip(features, rows.tolist(), strict=True):
+        found[channel, np.arange(basis.size)] = basis.features(_core.SlipState(ahead, rate, 0.0, 0.0, side))
+    features.flags.writeable = False
+    return features
