@@ -98,12 +98,9 @@ def _lagged(u: Floats, duration: Floats, lag: float) -> Floats:
 
 
 def _poses(robot: KnownRobot, drive: _Drive, seen: Floats, random: np.random.Generator) -> Poses:
-    slip = np.array(
-        [
-            _core.slip_rate(robot.basis, np.array(robot.slip), _core.SlipState(v, omega, 0.0, 0.0))
-            for v, omega in drive.mean.tolist()
-        ]
-    )
+    alpha, slip = np.array(robot.slip), np.zeros((len(drive.mean), 3))
+    for row, (v, omega) in zip(slip, drive.mean.tolist() if len(alpha) else (), strict=False):
+        row[:] = _core.slip_rate(robot.basis, alpha, _core.SlipState(v, omega, 0.0, 0.0))
     duration = np.diff(drive.knots)[:, None]
     moving = np.any(np.abs(drive.mean) > 1e-6, axis=1)[:, None]
     white = random.standard_normal(slip.shape) * np.sqrt(np.array(robot.slip_psd) / duration) * moving

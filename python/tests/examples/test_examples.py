@@ -3,6 +3,7 @@
 
 import re
 import runpy
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,8 @@ EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
 SCRIPTS = sorted(EXAMPLES.glob("*.py"))
 
 pytest.importorskip("mujoco", reason="the examples simulate a robot, which needs MuJoCo")
+slipwise_sim = pytest.importorskip("slipwise_sim")
+simulate_once = cache(slipwise_sim.simulate)  # several learn from the same drive
 
 
 def test_examples_are_numbered_from_one_without_gaps() -> None:
@@ -21,7 +24,10 @@ def test_examples_are_numbered_from_one_without_gaps() -> None:
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
-def test_an_example_runs_and_its_claims_hold(script: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_example_runs_and_its_claims_hold(
+    script: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(slipwise_sim, "simulate", simulate_once)
     text = script.read_text(encoding="utf-8")
     assert text.count("\nassert ") >= 1, "an example asserts something about its result"
     assert "# %% [markdown]" in text, "an example is in percent format"
