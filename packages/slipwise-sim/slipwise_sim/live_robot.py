@@ -11,8 +11,7 @@ import numpy as np
 
 from slipwise.errors import SettingsError
 from slipwise_sim.land_tamer import wheel_names
-from slipwise_sim.physics import LONGEST_STEP, World, planar_truth, start_physics
-from slipwise_sim.truth import Truth
+from slipwise_sim.physics import LONGEST_STEP, World, start_physics, unstable
 from slipwise_sim.tyre_law import TyreLaw, tyre_forces
 
 
@@ -57,11 +56,14 @@ class LiveRobot:
         Raises:
             SlipwiseError: the physics became unstable.
         """
-        truth = self._truth()
-        v, omega = self._vehicle.odometry(truth.wheel_left, truth.wheel_right)
-        self._yaw += math.remainder(float(truth.yaw[0]) - self._yaw, 2.0 * math.pi)
-        pose = (float(truth.x[0]), float(truth.y[0]), self._yaw)
-        return LiveState(float(truth.t[0]), pose, (float(v[0]), float(omega[0])))
+        position, spins = self._physics.data.qpos, self._physics.data.qvel[self._spins]
+        if not np.isfinite(position).all():
+            raise unstable()
+        x, y, _, a, b, c, d = position[:7].tolist()
+        turned = float(np.arctan2(2 * (a * d + b * c), 1 - 2 * (c * c + d * d)))
+        self._yaw += math.remainder(turned - self._yaw, 2.0 * math.pi)
+        v, omega = self._vehicle.odometry(*spins.reshape(-1, 2).mean(axis=0)[:, None])
+        return LiveState(self._done * self._step, (x, y, self._yaw), (float(v[0]), float(omega[0])))
 
     def tell(self, v: float, omega: float) -> LiveState:
         """Send one command [m/s, rad/s], let a period pass, and return the state then.
@@ -93,8 +95,3 @@ class LiveRobot:
             advice = 'use the terrain "tyre-force"'
             raise SettingsError("a contact-friction terrain cannot change", where="terrain", advice=advice)
         self._physics.tyres.law = tyre_forces(law)
-
-    def _truth(self) -> Truth:
-        velocity = self._physics.data.qvel[None].copy()
-        now = np.array([self._done * self._step])
-        return planar_truth(now, self._physics.data.qpos[None], velocity, velocity[:, self._spins])

@@ -218,7 +218,7 @@ def planar_truth(
 ) -> Truth:
     """Planar states from MuJoCo's: world position, quaternion, world velocity, body angular velocity."""
     if not np.isfinite(position).all():
-        raise SlipwiseError("the physics became unstable", advice="use values nearer the defaults")
+        raise unstable()
     w, x, y, z = position[:, 3:7].T
     yaw = np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
     cos, sin = np.cos(yaw), np.sin(yaw)
@@ -234,3 +234,8 @@ def planar_truth(
         wheel_left=spin[:, 0::2].mean(axis=1),
         wheel_right=spin[:, 1::2].mean(axis=1),
     )
+
+
+def unstable() -> SlipwiseError:
+    """Return what is raised where the physics does not stay finite."""
+    return SlipwiseError("the physics became unstable", advice="use values nearer the defaults")

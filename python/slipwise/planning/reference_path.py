@@ -28,6 +28,9 @@ class ReferencePath:
     progress: float = 0.0  # m along the path
     _along: Floats = field(init=False, repr=False)
     _heading: Floats = field(init=False, repr=False)
+    _steps: Floats = field(init=False, repr=False)  # [N - 1, 2] m
+    _squares: Floats = field(init=False, repr=False)  # [N - 1] m^2, of these
+    _lengths: Floats = field(init=False, repr=False)  # [N - 1] m
 
     def __post_init__(self) -> None:
         points = np.asarray(self.points, dtype=np.float64)
@@ -44,8 +47,10 @@ class ReferencePath:
         if not (np.isfinite(self.speed) and self.speed > 0.0):
             raise SettingsError(f"the speed is {self.speed}", where="speed", advice="give metres per second")
         self.points = points
-        steps = np.diff(points, axis=0)
+        self._steps = steps = np.diff(points, axis=0)
+        self._squares = (steps**2).sum(axis=1)
         self._along = np.concatenate(([0.0], np.cumsum(np.hypot(*steps.T))))
+        self._lengths = np.diff(self._along)
         self._heading = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
 
     @property
@@ -58,11 +63,10 @@ class ReferencePath:
 
         It is looked for near the last `progress`, so that a path may cross itself.
         """
-        begin, end = self.points[:-1], self.points[1:]
-        step = end - begin
-        fraction = np.clip(((np.asarray(point) - begin) * step).sum(axis=1) / (step**2).sum(axis=1), 0.0, 1.0)
-        offset = np.asarray(point) - (begin + fraction[:, None] * step)
-        place = self._along[:-1] + fraction * np.diff(self._along)
+        step, since = self._steps, np.asarray(point) - self.points[:-1]
+        fraction = np.clip((since * step).sum(axis=1) / self._squares, 0.0, 1.0)
+        offset = np.asarray(point) - (self.points[:-1] + fraction[:, None] * step)
+        place = self._along[:-1] + fraction * self._lengths
         far = (place < self.progress - SEARCH / 3.0) | (place > self.progress + SEARCH)
         squared = (offset**2).sum(axis=1) + np.where(far, 1e12, 0.0)
         best = int(np.argmin(squared))
