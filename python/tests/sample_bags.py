@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,7 +16,6 @@ from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION, TF, TF_DEFINITION
-from slipwise.logs.rotation import quaternions_of
 
 POSE = "geometry_msgs/msg/PoseStamped"
 TWIST = "geometry_msgs/msg/Twist"
@@ -53,11 +53,10 @@ class Bag:
         return self.make(TWIST, self.vector(v, 0.0, 0.0), self.vector(0.0, 0.0, omega))
 
     def pose(self, x: float, y: float, yaw: float) -> Any:
-        q = quaternions_of(np.zeros(1), np.zeros(1), np.array([yaw]))[0].tolist()
         return self.make(
             "geometry_msgs/msg/Pose",
             self.make("geometry_msgs/msg/Point", x, y, 0.0),
-            self.make("geometry_msgs/msg/Quaternion", *q),
+            self.make("geometry_msgs/msg/Quaternion", 0.0, 0.0, math.sin(0.5 * yaw), math.cos(0.5 * yaw)),
         )
 
     def odometry(self, stamp: int, x: float, y: float, yaw: float, v: float = 0.0, omega: float = 0.0) -> Any:

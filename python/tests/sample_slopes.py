@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,9 +33,9 @@ class Hills:
 
     def rise(self, x: float, y: float) -> tuple[float, float]:
         """Rise per metre along x and y of hills in both directions."""
-        k = 2.0 * np.pi / LENGTH
+        k = 2.0 * math.pi / LENGTH
         size = 0.25 * self.height * k
-        return float(size * np.cos(k * x)), float(-size * np.sin(k * y))
+        return size * math.cos(k * x), -size * math.sin(k * y)
 
 
 def commands_of(random: np.random.Generator, seconds: float) -> tuple[Floats, Floats, Floats]:
@@ -62,59 +63,54 @@ def hilly_log(seed: int, hills: Hills) -> Log:
 
 def _drive(hills: Hills, v: Floats, omega: Floats) -> Floats:
     """Poses [N, 6] x, y, z, roll, pitch, yaw of the robot's rotation in space, integrated by midpoints."""
-    state = np.zeros(4)  # x, y, z, yaw
-    speed = np.zeros(2)
+    x = y = z = yaw = speed = rate = 0.0
+    follows = 1.0 - math.exp(-STEP / LAG)
     rows = np.zeros((len(v), 6))
-    for i, (v_now, omega_now) in enumerate(zip(v, omega, strict=True)):
-        rows[i] = (*state[:3], *_tilt(hills, state), state[3])
-        speed = speed + (np.array([v_now, omega_now]) - speed) * (1.0 - np.exp(-STEP / LAG))
-        middle = state + 0.5 * STEP * _rate(hills, state, speed)
-        state = state + STEP * _rate(hills, middle, speed)
+    for row, v_now, omega_now in zip(rows, v.tolist(), omega.tolist(), strict=True):
+        row[:] = x, y, z, *_tilt(hills, x, y, yaw), yaw
+        speed, rate = speed + (v_now - speed) * follows, rate + (omega_now - rate) * follows
+        half = [0.5 * STEP * each for each in _rates(hills, (x, y, yaw), (speed, rate))]
+        moved = _rates(hills, (x + half[0], y + half[1], yaw + half[3]), (speed, rate))
+        x, y, z, yaw = (each + STEP * by for each, by in zip((x, y, z, yaw), moved, strict=True))
     return rows
 
 
-def _tilt(hills: Hills, state: Floats) -> tuple[float, float]:
-    rise_x, rise_y = hills.rise(state[0], state[1])
-    c, s = np.cos(state[3]), np.sin(state[3])
-    pitch = -np.arctan(rise_x * c + rise_y * s)
-    return float(np.arctan((rise_y * c - rise_x * s) * np.cos(pitch))), float(pitch)
+def _tilt(hills: Hills, x: float, y: float, yaw: float) -> tuple[float, float]:
+    """Roll and pitch [rad] of a robot that stands there."""
+    rise_x, rise_y = hills.rise(x, y)
+    c, s = math.cos(yaw), math.sin(yaw)
+    pitch = -math.atan(rise_x * c + rise_y * s)
+    return math.atan((rise_y * c - rise_x * s) * math.cos(pitch)), pitch
 
 
-def _rate(hills: Hills, state: Floats, speed: Floats) -> Floats:
+def _rates(
+    hills: Hills, place: tuple[float, float, float], drive: tuple[float, float]
+) -> tuple[float, float, float, float]:
     """Rates of x, y, z and yaw: with the yaw rate, the body turns as it does about its own z axis."""
-    roll, pitch = _tilt(hills, state)
-    gx, gy = GRAVITY * np.sin(pitch), -GRAVITY * np.cos(pitch) * np.sin(roll)
-    v, omega = speed
-    forward = 0.95 * v + hills.forward * gx
+    x, y, yaw = place
+    roll, pitch = _tilt(hills, x, y, yaw)
+    gx, gy = GRAVITY * math.sin(pitch), -GRAVITY * math.cos(pitch) * math.sin(roll)
+    forward = 0.95 * drive[0] + hills.forward * gx
     left = hills.left * gy
-    turn = 0.8 * omega + hills.turn * gy
-    turned = rotation(roll, pitch, state[3])
-    moved = turned @ np.array([forward, left, 0.0])
+    turn = 0.8 * drive[1] + hills.turn * gy
+    ahead, aside = axes(roll, pitch, yaw)
+    moved = [forward * a + left * b for a, b in zip(ahead, aside, strict=True)]
     tiny = 1e-6
 
     def own_turn(yaw_rate: float) -> float:
-        later = state + tiny * np.array([*moved, yaw_rate])
-        change = turned.T @ rotation(*_tilt(hills, later), later[3])
-        return float(0.5 * (change[1, 0] - change[0, 1]) / tiny)
+        then = x + tiny * moved[0], y + tiny * moved[1], yaw + tiny * yaw_rate
+        ahead_then, aside_then = axes(*_tilt(hills, *then), then[2])
+        change = sum(a * b for a, b in zip(aside, ahead_then, strict=True))
+        return 0.5 * (change - sum(a * b for a, b in zip(ahead, aside_then, strict=True))) / tiny
 
     without = own_turn(0.0)
-    return np.array([*moved, (turn - without) / (own_turn(1.0) - without)])
+    return moved[0], moved[1], moved[2], (turn - without) / (own_turn(1.0) - without)
 
 
-def rotation(roll: float, pitch: float, yaw: float) -> Floats:
-    """Return the rotation about fixed x, then y, then z."""
-    cr, sr, cp, sp, cy, sy = (
-        np.cos(roll),
-        np.sin(roll),
-        np.cos(pitch),
-        np.sin(pitch),
-        np.cos(yaw),
-        np.sin(yaw),
-    )
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
+def axes(
+    roll: float, pitch: float, yaw: float
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Return where a body's x and y axes point that is turned about fixed x, then y, then z."""
+    cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
+    cy, sy = math.cos(yaw), math.sin(yaw)
+    return (cy * cp, sy * cp, -sp), (cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr)
