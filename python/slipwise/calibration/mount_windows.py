@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
@@ -38,9 +39,15 @@ class _First:
     t: Floats
     pose: Floats  # [3, N] x, y, yaw, which is not wrapped
 
+    @cached_property
+    def _place(self) -> NDArray[np.complex128]:
+        """Positions as complex numbers: both coordinates are looked up at once."""
+        return np.asarray(self.pose[0] + 1j * self.pose[1])
+
     def at(self, t: Floats) -> Floats:
         """Return poses at times of any shape, [3, ...]."""
-        return np.array([np.interp(t, self.t, each) for each in self.pose])
+        place = np.interp(t, self.t, self._place)
+        return np.array((place.real, place.imag, np.interp(t, self.t, self.pose[2])))
 
     def smooth(self, t: Floats) -> tuple[Floats, Floats]:
         """Return speeds [3, N] and yaws [N], means over some tenths of a second: not those of the noise."""
@@ -187,12 +194,11 @@ def _left(windows: Windows, state: Floats, noise: Floats, *, heading: bool) -> L
 
 
 def _arm(yaw: Floats, state: Floats) -> Floats:
-    return _turned(state[:2, np.newaxis], yaw)
+    return _turned(state[:2, np.newaxis], np.cos(yaw), np.sin(yaw))
 
 
-def _turned(vectors: Floats, angle: Floats) -> Floats:
-    """Return vectors [2, N], turned to the left."""
-    cos, sin = np.cos(angle), np.sin(angle)
+def _turned(vectors: Floats, cos: Floats, sin: Floats) -> Floats:
+    """Return vectors [2, N], turned to the left by angles of which these are cosines and sines."""
     return np.array((cos * vectors[0] - sin * vectors[1], sin * vectors[0] + cos * vectors[1]))
 
 
@@ -211,8 +217,8 @@ def _laid(windows: Windows, seen: Floats, weight: Floats, *, heading: bool) -> t
     turn = np.arctan2(sin, cos)
     rows, by_turn = np.empty_like(seen), np.empty_like(seen)
     for _ in range(3):  # the turn of the frame is no linear parameter
-        angle = windows.each(turn)
-        laid = _turned(flat, angle)
+        angle, cos, sin = windows.each(np.array((turn, np.cos(turn), np.sin(turn))))
+        laid = _turned(flat, cos, sin)
         rest = np.mod(angle - turns + np.pi, 2.0 * np.pi) - np.pi
         rows = np.array((*(laid - target), rest)) * weight[:, np.newaxis]
         by_turn = np.array((-laid[1], laid[0], np.ones_like(rest))) * weight[:, np.newaxis]
