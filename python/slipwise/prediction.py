@@ -183,8 +183,9 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         level = _core.Segment(begin, end, _core.Pose2(0.0, 0.0, 0.0), None, *known_force)
         return level.with_ground(under).with_heading(at[2])
 
+    inflation, dof = students_at(model, np.append(0.0, ahead))
     of_inputs = _of_inputs(model, (inputs, begin, measured), history, segment_over(horizon), begin + ahead)
-    for seconds, of_curves in zip(ahead.tolist(), of_inputs, strict=True):
+    for seconds, growth, of_curves in zip(ahead.tolist(), inflation[1:].tolist(), of_inputs, strict=True):
         segment = segment_over(seconds)
         if known is not None:
             segment = segment.with_measured_actuator(*known)
@@ -194,8 +195,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         else:
             expected = _core.predict_ahead(disturbance, known_now, history, now, segment, slip.in_core)
         poses.append(expected.pose)
-        covariance.append(expected.covariance * student_at(model, seconds).inflation + of_curves)
-    dof = np.array([student_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
+        covariance.append(expected.covariance * growth + of_curves)
     if isinstance(ground, ElevationMap):
         ground.check(_in_frame(np.array(poses), at))
     standing = None if under is None else under.standings(np.array(poses))
@@ -259,20 +259,26 @@ def _measured_actuator(
 
 
 def student_at(model: Model, horizon: float) -> StudentT:
-    """Growth of the covariance and degrees of freedom at a horizon [s].
+    """Growth of the covariance and degrees of freedom at a horizon [s], as `students_at` says."""
+    inflation, dof = students_at(model, np.array([horizon]))
+    return StudentT(inflation=float(inflation[0]), dof=float(dof[0]))
+
+
+def students_at(model: Model, horizons: Floats) -> tuple[Floats, Floats]:
+    """Growth of the covariance [N] and degrees of freedom [N] at horizons [N] in s.
 
     Their logarithms are interpolated between the horizons judged, and kept beyond them; without any, the
     covariance is taken as stated and nearly normal.
     """
     students = model.content.noise.student_t
     if not students:
-        return StudentT(inflation=1.0, dof=MOST_DOF)
+        return np.ones(len(horizons)), np.full(len(horizons), MOST_DOF)
     seconds = sorted(students)
     inflation, dof = (
-        np.exp(np.interp(horizon, seconds, [np.log(getattr(students[s], name)) for s in seconds]))
+        np.exp(np.interp(horizons, seconds, [np.log(getattr(students[s], name)) for s in seconds]))
         for name in ("inflation", "dof")
     )
-    return StudentT(inflation=float(inflation), dof=float(np.clip(dof, LEAST_DOF, MOST_DOF)))
+    return inflation, np.clip(dof, LEAST_DOF, MOST_DOF)
 
 
 def _initial(initial: tuple[float, ...], axes: Axes) -> Floats:

@@ -20,7 +20,7 @@ from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.start import Start
 from slipwise.planning.throttle import behind_curves, curve_covariance
-from slipwise.prediction import student_at
+from slipwise.prediction import student_at, students_at
 from slipwise.terrain_ahead import slip_ahead
 
 Numbers = NDArray[Any]  # float32 or float64
@@ -216,9 +216,8 @@ def _covariance(  # noqa: PLR0913  (of one rollout)
     result: Numbers = np.empty((6, periods, rollouts), commands.dtype)
     unit = uncertain(model, dt, start, dt)
     starts = start.in_core(rollouts, drive_axes(model))
-    at_one_period = student_at(model, dt).inflation
-    growth = [student_at(model, dt * (k + 1)).inflation / at_one_period for k in range(periods)]
-    _core.rollout_covariance(unit, commands, starts, result, growth, threads)
+    inflation, _ = students_at(model, dt * np.arange(1, periods + 1))
+    _core.rollout_covariance(unit, commands, starts, result, (inflation / inflation[0]).tolist(), threads)
     if of_curves is not None:
         result += of_curves
     return result
