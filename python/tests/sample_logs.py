@@ -51,14 +51,17 @@ def simulated_run(drive: Drive) -> Run:
     t, v, omega = commands(drive, rng)
     (wheel_v, actual_v), (wheel_omega, actual_omega) = _through_chain(v, drive), _through_chain(omega, drive)
     spread = np.sqrt(np.array(drive.slip_psd) * STEP)
-    alpha = np.array(drive.alpha, dtype=np.float64)
-    disturbed = _disturbed(drive, len(t))
+    slip = np.zeros((len(t), 3))
+    if len(drive.alpha):
+        alphas = np.array(drive.alpha, dtype=np.float64) + _disturbed(drive, len(t))
+        drives = zip(actual_v.tolist(), actual_omega.tolist(), strict=True)
+        for row, alpha, (speed, rate) in zip(slip, alphas, drives, strict=True):
+            row[:] = _core.slip_rate(drive.basis, alpha, _core.SlipState(speed, rate, 0.0, 0.0))
+    twists = np.column_stack((actual_v, np.zeros_like(t), actual_omega)) + slip
     pose, path = _core.Pose2(0.3, -0.2, 0.4), np.empty((len(t), 3))
-    for i, (speed, rate) in enumerate(zip(actual_v.tolist(), actual_omega.tolist(), strict=True)):
-        path[i] = pose.vector()
-        slip = _core.slip_rate(drive.basis, alpha + disturbed[i], _core.SlipState(speed, rate, 0.0, 0.0))
-        twist = np.array([speed, 0.0, rate]) + slip
-        pose = _core.compose(pose, _core.exp(twist * STEP + spread * rng.standard_normal(3)))
+    for row, step in zip(path, twists * STEP + spread * rng.standard_normal(path.shape), strict=True):
+        row[:] = pose.vector()
+        pose = _core.compose(pose, _core.exp(step))
     path += rng.standard_normal(path.shape) * np.array(
         [drive.pose_std[0], drive.pose_std[0], drive.pose_std[1]]
     )
@@ -79,11 +82,11 @@ def _disturbed(drive: Drive, count: int) -> Floats:
     std, time_constant = drive.disturbance
     rng = np.random.default_rng([drive.seed, 1])
     kept = np.exp(-STEP / time_constant)
-    now = rng.standard_normal(len(drive.alpha))
-    for i in range(count):
-        deviations[i] = std * now
-        now = kept * now + np.sqrt(1.0 - kept**2) * rng.standard_normal(len(drive.alpha))
-    return deviations
+    now, drawn = rng.standard_normal(len(drive.alpha)), rng.standard_normal((count, len(drive.alpha)))
+    for row, new in zip(deviations, np.sqrt(1.0 - kept**2) * drawn, strict=True):
+        row[:] = now
+        now = kept * now + new
+    return std * deviations
 
 
 def commands(drive: Drive, rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
