@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
@@ -34,7 +36,8 @@ _PACKAGES = {
 }
 
 
-def added(group: str) -> dict[str, EntryPoint]:
+@cache  # all that is installed is read for it
+def added(group: str) -> Mapping[str, EntryPoint]:
     """Return what installed packages add to a group, by name."""
     return {entry.name: entry for entry in sorted(entry_points(group=group), key=lambda entry: entry.name)}
 

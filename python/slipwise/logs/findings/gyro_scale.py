@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -88,13 +89,15 @@ class _Window:
 
     def turns(self, late: float) -> tuple[Floats, Floats]:
         """Return how far it has turned about each time [11, N] and its yaw rate then [N]."""
-        turned = self.gyro.at(self.t + late + _AROUND)
-        return turned - turned.mean(), (turned[-1] - turned[0]) / (2.0 * _HALF)
+        if late not in self._turns:
+            turned = self.gyro.at(self.t + late + _AROUND)
+            self._turns[late] = turned - turned.mean(), (turned[-1] - turned[0]) / (2.0 * _HALF)
+        return self._turns[late]
 
     def begun(self, scale: float, late: float) -> tuple[float, float, float, float]:
         """Return the least sum of squares sideways, with the heading, the bias and the arm for it."""
         turned, rate = self.turns(late)
-        along = np.exp(1j * turned / scale).mean(axis=0) * np.exp(1j * _BIASES[:, None] * self._since)
+        along = np.exp(1j * turned / scale).mean(axis=0) * self._by_bias
         way = self.velocity * np.conj(along)
         columns = np.stack((way.real, way.imag, np.broadcast_to(-rate / scale, way.shape)), axis=-1)
         squares = np.einsum("bni,bnj->bij", columns, columns)
@@ -128,7 +131,15 @@ class _Window:
         q, _ = np.linalg.qr(own)
         return _without(q, rows), _without(q, by)
 
-    @property
+    @cached_property
+    def _turns(self) -> dict[float, tuple[Floats, Floats]]:
+        return {}  # by how late: each scale asks for them
+
+    @cached_property
+    def _by_bias(self) -> NDArray[np.complex128]:
+        return np.asarray(np.exp(1j * _BIASES[:, None] * self._since))
+
+    @cached_property
     def _since(self) -> Floats:
         return np.asarray(self.t - self.t.mean())
 
