@@ -22,7 +22,7 @@ from slipwise.excitation.information import (
 )
 from slipwise.excitation.knowledge import Knowledge
 from slipwise.excitation.moves import ORDERS, Move, command_periods, figure_of
-from slipwise.excitation.robots import PERIOD, Robots, drawn_robots, edge_robots, fits
+from slipwise.excitation.robots import PERIOD, Robots, drawn_robots, edge_robots
 
 Floats = NDArray[np.float64]
 
@@ -266,8 +266,8 @@ def _checked(search: _Search, many: Robots, best: _Found | None) -> _Found | Non
         score, moves = search.drive(fraction * room)
         if not moves or (best is not None and score >= best[0]):
             return best  # with less room, it would be no better
-        box = many.box(command_periods(moves, PERIOD))
-        if fits(box[None], room)[0]:
+        box = many.box(command_periods(moves, PERIOD), room)
+        if box is not None:
             return score, tuple(moves), box
     return best
 

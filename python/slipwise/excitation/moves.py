@@ -60,11 +60,11 @@ def command_periods(moves: Sequence[Move], period: float) -> Floats:
 
     Hold and pause are multiples of it.
     """
-    rows: list[Floats] = [np.zeros((0, 3))]
+    rows, periods = [], []
     for move in moves:
-        rows.append(np.tile((move.v, move.vy, move.omega), (round(move.hold / period), 1)))
-        rows.append(np.zeros((round(move.pause / period), 3)))
-    return np.vstack(rows)
+        rows += [(move.v, move.vy, move.omega), (0.0, 0.0, 0.0)]
+        periods += [round(move.hold / period), round(move.pause / period)]
+    return np.repeat(np.array(rows, np.float64).reshape(-1, 3), np.array(periods, np.int64), axis=0)
 
 
 def start_times(moves: Sequence[Move], first: float) -> Floats:

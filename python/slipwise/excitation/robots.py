@@ -35,8 +35,11 @@ class Robots:
             roll(program, commands[None], path)
         return paths[..., 0]
 
-    def box(self, commands: Floats) -> Floats:
-        """Return least and largest x, y [4] m that any robot reaches under a sequence of commands [K, 3]."""
+    def box(self, commands: Floats, room: Floats | None = None) -> Floats | None:
+        """Return least and largest x, y [4] m that any robot reaches under a sequence of commands [K, 3].
+
+        None where they need more than a room [2] m: once some robots do, others do not drive.
+        """
         box, roll = np.zeros(4), self._roller()  # all begin at the start
         paths = np.empty((min(TOGETHER, len(self.programs)), 3, len(commands), 1))
         for first in range(0, len(self.programs), TOGETHER):
@@ -46,6 +49,8 @@ class Robots:
             reached = paths[: len(programs), :2]
             box[::2] = np.minimum(box[::2], reached.min(axis=(0, 2, 3)))
             box[1::2] = np.maximum(box[1::2], reached.max(axis=(0, 2, 3)))
+            if room is not None and not fits(box[None], room)[0]:
+                return None
         return box
 
     def inside(self, commands: Floats, room: Floats) -> tuple[NDArray[np.bool_], Floats]:
