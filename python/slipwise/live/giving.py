@@ -49,9 +49,9 @@ class Giving:
             return
         self._given = (model, which)
         parts.intake.surfaces.look_again()
-        text = f"# slipwise live, {parts.who.vehicle}, stamp {t:.3f} s: {which}\n{model.to_yaml()}"
         who, validity = parts.who.vehicle, parts.learning.validity.whole
-        self._publish(ModelText(t, text, model, who, which, validity))
+        before = f"# slipwise live, {who}, stamp {t:.3f} s: {which}\n"
+        self._publish(ModelText(t, before, model, who, which, validity))
 
     def _say_held(self, t: float, applied: AppliedModel) -> None:
         said = self._parts.said

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -159,11 +160,16 @@ class ModelText:
     """The model file as text, `~/model`, and its numbers, `~/motion_model` (both latched)."""
 
     t: float  # s
-    text: str
+    before: str  # the model's own text; all there is where there is no model
     model: Model | None = None  # whose numbers are given too
     vehicle: str = ""
     given: str = ""  # which model it is, in words
     validity: Validity = "unestimated"
+
+    @cached_property
+    def text(self) -> str:
+        """All of it, made when somebody asks for it first."""
+        return self.before + ("" if self.model is None else self.model.to_yaml())
 
 
 @dataclass(frozen=True)

@@ -185,9 +185,9 @@ def rated_wheels(commands: Inputs, chain: _core.ActuatorModel, up: float, down: 
     fine = np.arange(round(float(commands.t[-1]) / step) + 1) * step - chain.delay_v
     asked = np.where(fine < 0.0, 0.0, commands.v[np.maximum((fine / period + 1e-6).astype(int), 0)])
     speeds = [speed]
-    for command in asked[1:]:
+    for command in asked[1:].tolist():
         most = down if (command - speed) * speed < 0.0 else up
-        speed += step * float(np.clip((command - speed) / chain.time_constant_v, -most, most))
+        speed += step * min(max((command - speed) / chain.time_constant_v, -most), most)
         speeds.append(speed)
     v = np.array(speeds)[np.rint(commands.t / step).astype(int)]
     noise = np.random.default_rng(5).normal(size=(2, len(v)))

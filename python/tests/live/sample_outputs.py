@@ -157,7 +157,7 @@ def _driven(run: Run) -> Iterator[Output]:
             )
     yield surface_at()
     assert model is not None
-    yield ModelText(float(c.t[-1]), model.to_yaml(), model, VEHICLE, "valid", "estimated")
+    yield ModelText(float(c.t[-1]), "", model, VEHICLE, "valid", "estimated")
 
 
 def _from(pose: Floats, path: PredictedPath) -> Path:
