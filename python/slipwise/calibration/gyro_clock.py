@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,21 +61,26 @@ class _Window:
     yaw: Floats
     gyro: Turned  # of all of the run
 
-    def left(self, late: float, scale: float) -> tuple[Floats, Floats]:
-        """Return what is left of the headings [N], and derivatives by lateness and scale [N, 2]."""
+    def left(self, late: float, scale: float) -> Floats:
+        """Return what is left of the headings [N]."""
+        return self._rest(self.yaw - self.gyro.at(self.t + late) / scale)
+
+    def derivatives(self, late: float, scale: float) -> Floats:
+        """Return derivatives of what is left by lateness and scale [N, 2]."""
         at = self.t + late
-        turned = self.gyro.at(at)
         ahead, behind = (
             np.mean([self.gyro.at(at + side + by) for by in _AROUND], axis=0) for side in (0.05, -0.05)
         )
         rate = (ahead - behind) / 0.1
-        free = np.column_stack((np.ones(len(self.t)), self.t - self.t.mean()))
-        q, _ = np.linalg.qr(free)
+        return self._rest(np.column_stack((rate / scale, -self.gyro.at(at) / scale**2)))
 
-        def rest(rows: Floats) -> Floats:
-            return rows - q @ (q.T @ rows)
+    @cached_property
+    def _free(self) -> Floats:
+        """A heading and a bias of the gyro, which are free, as orthogonal columns [N, 2]."""
+        return np.linalg.qr(np.column_stack((np.ones(len(self.t)), self.t - self.t.mean())))[0]
 
-        return rest(self.yaw - turned / scale), rest(np.column_stack((rate / scale, -turned / scale**2)))
+    def _rest(self, rows: Floats) -> Floats:
+        return rows - self._free @ (self._free.T @ rows)
 
 
 def gyro_clock(runs: Sequence[Run]) -> GyroClock | None:
@@ -83,11 +89,12 @@ def gyro_clock(runs: Sequence[Run]) -> GyroClock | None:
     if len(windows) < _FEWEST_WINDOWS:
         return None
     some = windows[:: max(1, len(windows) // _ROUGH)]
-    costs = [sum(float(np.sum(w.left(late, 1.0)[0] ** 2)) for w in some) for late in _GRID]
+    costs = [sum(float(np.sum(w.left(late, 1.0) ** 2)) for w in some) for late in _GRID]
     state = np.array((float(_GRID[int(np.argmin(costs))]), 1.0))
     variances = np.ones(2)
     for _ in range(_ROUNDS):
-        parts = [window.left(*state.tolist()) for window in windows]
+        late, scale = state.tolist()
+        parts = [(window.left(late, scale), window.derivatives(late, scale)) for window in windows]
         sizes = np.array([np.sqrt(np.mean(rows**2)) for rows, _ in parts])
         kept = [part for part, size in zip(parts, sizes, strict=True) if size <= _OUTLIER * np.median(sizes)]
         information = sum((j.T @ j for _, j in kept), np.zeros((2, 2)))
