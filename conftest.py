@@ -20,11 +20,11 @@ _NO_DATA = "SLIPWISE_DATA is not set: no real logs"
 
 #: Files of slow tests that take longest: they run first, so that no process is left with one at the end.
 LONGEST = (
-    *("test_examples", "test_live_on_ros", "test_faults", "test_contradicted_streams", "test_mounts"),
-    *("test_interruption", "test_force_recovery", "test_code_in_pages", "test_live", "test_same_verdict"),
-    *("test_findings", "test_trailer_recovery", "test_hillside", "test_chapter6", "test_bag_faults"),
-    *("test_hour_of_day", "test_disturbed_model", "test_checks", "test_closed_loop", "test_matrix"),
-    *("test_settings_for_log", "test_ros_package", "test_figures", "test_verdict", "test_positions"),
+    *("test_matrix", "test_faults", "test_hostile_files", "test_contradicted_streams", "test_examples"),
+    *("test_live_on_ros", "test_code_in_pages", "test_causality", "test_mounts", "test_interruption"),
+    *("test_same_verdict", "test_replay", "test_live", "test_bag_faults", "test_hour_of_day", "test_checks"),
+    *("test_covariance", "test_force_recovery", "test_disturbed_model", "test_findings", "test_closed_loop"),
+    *("test_hillside", "test_trailer_recovery", "test_ros_package", "test_figures", "test_chapter6"),
 )
 
 

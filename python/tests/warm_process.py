@@ -10,6 +10,7 @@ import gc
 import importlib
 import json
 import os
+import pkgutil
 import resource
 import signal
 import subprocess
@@ -22,11 +23,12 @@ from functools import cache
 from pathlib import Path
 
 LOADED = (
-    *("pyarrow.csv", "pyarrow.parquet", "apsw", "lz4.frame", "rosbags.rosbag2", "rich.table", "yaml"),
-    *("slipwise.cli.main", "slipwise.api", "slipwise.calibration.calibrate_sequence"),
-    *("slipwise.evaluation", "slipwise.export", "slipwise.logs.bag_file", "slipwise.logs.write_tidy"),
-    *("slipwise.models.upgrade", "slipwise.planning", "slipwise.reporting"),
+    *("numpy.ma", "numpy.random", "pyarrow.compute", "pyarrow.csv", "pyarrow.parquet", "rich.console"),
+    *("apsw", "lz4.frame", "rosbags.rosbag2", "rosbags.typesys.stores.ros2_humble", "rich.table", "yaml"),
+    *("slipwise.api", "slipwise.calibration.calibrate_sequence", "slipwise.evaluation", "slipwise.export"),
+    *("slipwise.inspection", "slipwise.models.upgrade", "slipwise.planning", "slipwise.reporting"),
 )
+WHOLE = ("slipwise.cli", "slipwise.logs")  # packages all of whose modules are loaded
 
 
 @dataclass(frozen=True)
@@ -97,8 +99,13 @@ def _child(request: dict[str, object]) -> None:
     os._exit(70)
 
 
+def _modules_in(package: str) -> list[str]:
+    folders = importlib.import_module(package).__path__
+    return [each.name for each in pkgutil.iter_modules(folders, f"{package}.")]
+
+
 def _serve() -> None:
-    for module in LOADED:
+    for module in (*LOADED, *(name for package in WHOLE for name in _modules_in(package))):
         importlib.import_module(module)
     gc.freeze()  # else a child that collects copies all of it
     for line in sys.stdin:
