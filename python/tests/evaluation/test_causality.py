@@ -78,6 +78,18 @@ def by_name(evaluation: Evaluation) -> dict[tuple[str, float], Predictions]:
     return {(p.method, p.horizon): p for p in evaluation.predictions}
 
 
+def evaluated(log: Log, input_name: str, *, learn: bool = True) -> dict[tuple[str, float], Predictions]:
+    """Return predictions of two seconds, where the slip disturbance is learned or not."""
+    options, settings = (
+        replace(OPTIONS, horizons=(2.0,)),
+        make_settings({"slip_disturbance": {"learn": learn}}),
+    )
+    return by_name(evaluate(log, input=input_name, options=options, settings=settings))
+
+
+whole_of = cache(evaluated)  # several tests hold others against them
+
+
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: str) -> None:
     whole = evaluate(log, input=input_name, options=OPTIONS)
@@ -104,16 +116,12 @@ def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: s
 def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_the_start(
     log: Log, input_name: str, *, at_start: bool
 ) -> None:
-    options = replace(OPTIONS, horizons=(2.0,))
-    settings = make_settings({"slip_disturbance": {"learn": at_start}})
-    whole = by_name(evaluate(log, input=input_name, options=options, settings=settings))
+    whole = whole_of(log, input_name, learn=at_start)
     for i in chosen(whole["auto", 2.0]):
         start = float(whole["auto", 2.0].t_start[i])
         until = start if at_start else start - 2.0  # the slip and the pose now are of the start
         runs = tuple(replace(run, poses=spoilt_poses(run.poses, until + 1e-6)) for run in log.runs)
-        spoilt = by_name(
-            evaluate(replace(log, runs=runs), input=input_name, options=options, settings=settings)
-        )
+        spoilt = evaluated(replace(log, runs=runs), input_name, learn=at_start)
         for key, predictions in whole.items():
             same(predictions, i, spoilt[key], i)
         assert not np.array_equal(whole["auto", 2.0].measured[i], spoilt["auto", 2.0].measured[i])
@@ -121,15 +129,14 @@ def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_th
 
 @pytest.mark.slow
 def test_predictions_from_commands_use_no_wheel_speed_after_their_start(log: Log) -> None:
-    options = replace(OPTIONS, horizons=(2.0,))
-    whole = by_name(evaluate(log, input="command", options=options))
+    whole = whole_of(log, "command", learn=True)
     for i in chosen(whole["auto", 2.0]):
         start = float(whole["auto", 2.0].t_start[i])
         runs = tuple(
             replace(run, wheels=None if run.wheels is None else spoilt_inputs(run.wheels, start))
             for run in log.runs
         )
-        spoilt = by_name(evaluate(replace(log, runs=runs), input="command", options=options))
+        spoilt = evaluated(replace(log, runs=runs), "command")
         for key, predictions in whole.items():
             same(predictions, i, spoilt[key], i)
 
@@ -137,8 +144,7 @@ def test_predictions_from_commands_use_no_wheel_speed_after_their_start(log: Log
 @pytest.mark.slow
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> None:
-    options = replace(OPTIONS, horizons=(2.0,))
-    whole = by_name(evaluate(log, input=input_name, options=options))
+    whole = whole_of(log, input_name, learn=True)
     for i in chosen(whole["auto", 2.0]):
         end = float(whole["auto", 2.0].t_end[i])
         runs = tuple(
@@ -149,7 +155,7 @@ def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> 
             )
             for run in log.runs
         )
-        spoilt = by_name(evaluate(replace(log, runs=runs), input=input_name, options=options))
+        spoilt = evaluated(replace(log, runs=runs), input_name)
         for key, predictions in whole.items():
             same(predictions, i, spoilt[key], i)
 
