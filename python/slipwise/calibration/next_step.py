@@ -25,13 +25,6 @@ def compare_command(model: Path) -> str:
     return f"slipwise compare {quote(str(model))} NEW.yaml"
 
 
-def verdict_label(verdict: Verdict | VerdictSection) -> tuple[str, str]:
-    """Return what a verdict says in a few words, and its colour."""
-    if verdict.good and verdict.reservations:
-        return "GOOD, WITH RESERVATIONS.", "yellow"
-    return ("GOOD.", "green") if verdict.good else ("NOT GOOD ENOUGH.", "red")
-
-
 def after_learning(verdict: Verdict | VerdictSection, model: Path) -> tuple[str, ...]:
     """Say what to do with a model that was just learned, or with the robot."""
     if not verdict.good:

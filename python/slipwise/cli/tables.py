@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from slipwise.calibration.next_step import verdict_label
 from slipwise.cli.output import Column, Output
 from slipwise.cli.run_folder import killed_runs
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, NEGLIGIBLE
 from slipwise.models.share_words import SHARE_HEAD, share_rows
+from slipwise.models.summary import verdict_label
 from slipwise.number_text import count_text, estimate_texts, number_text
 
 if TYPE_CHECKING:

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
+from typing import Protocol
 
 from slipwise.argument_types import check_arguments
 from slipwise.models.channel_words import response_sentences
@@ -24,6 +26,23 @@ _AXES = {"speed": "speed", "yaw_rate": "yaw rate", "side": "each side"}
 _NO_SLIP = "What was learned is not slip: poses and inputs of the log contradict each other."
 _SENSOR_PLACES = (("sensor_x", "ahead of", "behind"), ("sensor_y", "left of", "right of"))
 _HEAD = ("parameter", "value", "std", "unit", "identified")
+
+
+class Judged(Protocol):
+    """A verdict on a log, or that in a model file."""
+
+    @property
+    def good(self) -> bool: ...  # noqa: D102
+
+    @property
+    def reservations(self) -> Sequence[str]: ...  # noqa: D102
+
+
+def verdict_label(verdict: Judged) -> tuple[str, str]:
+    """Return what a verdict says in a few words, and its colour."""
+    if verdict.good and verdict.reservations:
+        return "GOOD, WITH RESERVATIONS.", "yellow"
+    return ("GOOD.", "green") if verdict.good else ("NOT GOOD ENOUGH.", "red")
 
 
 @dataclass(frozen=True)

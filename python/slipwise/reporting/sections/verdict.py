@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import math
 
-from slipwise.calibration.next_step import after_learning, check_command, export_command, verdict_label
+from slipwise.calibration.next_step import after_learning, check_command, export_command
 from slipwise.calibration.result import Verdict
 from slipwise.models.inputs import MANY
 from slipwise.models.parameter_table import physical_name
-from slipwise.models.summary import BETTER, summarise
+from slipwise.models.summary import BETTER, summarise, verdict_label
 from slipwise.reporting.contents import PLAIN, Contents
 from slipwise.reporting.markup import bullets, details, escape, number, paragraph
 from slipwise.reporting.method_names import BASELINE

@@ -10,9 +10,9 @@ import pytest
 from reporting.page_parts import contents_of, figures_of, text_of
 from reporting.synthetic_results import make_results, with_model, with_verdict
 
-from slipwise.calibration.next_step import after_learning, verdict_label
+from slipwise.calibration.next_step import after_learning
 from slipwise.calibration.result import Verdict
-from slipwise.models.summary import summarise
+from slipwise.models.summary import summarise, verdict_label
 from slipwise.reporting.sections.verdict import VerdictSection
 
 
