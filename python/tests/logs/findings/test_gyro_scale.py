@@ -78,14 +78,14 @@ def test_calibrate_reserves_its_verdict() -> None:
 def test_no_gyro_of_a_real_log_without_its_headings_is_said_to_turn_otherwise(
     real_log_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told = 0
+    known = 0
     for path in sorted(
         [*real_log_dir.glob("*/*.csv.gz"), *real_log_dir.parent.glob("vehicles/warthog*.csv.gz")]
     ):
         log = open_log(path)
         runs = [replace(run, poses=replace(run.poses, course=True)) for run in log.runs]
         scale = gyro_scale(runs)
-        told += scale is not None
+        known += scale is not None
         monkeypatch.setattr(f"{GyroScale.__module__}.gyro_scale", lambda _, scale=scale: scale)  # once
         assert found_in(*runs) is None, path.name
-    assert told >= 6
+    assert known >= 6
