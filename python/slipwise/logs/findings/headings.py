@@ -172,6 +172,8 @@ class OtherUnit(Check):
             return None
         asked, done = asked[along], (w.distance[along] / asked[along])
         slow = asked <= np.median(asked)
+        if slow.all():  # one speed alone
+            return None
         scale, *halves = (float(np.median(done[part])) for part in (slow | ~slow, slow, ~slow))
         unit = likely_commands(scale)
         alike = all(abs(half / scale - 1.0) < _ALIKE for half in halves)

@@ -86,6 +86,7 @@ def test_a_flipped_sign_is_told_from_a_turned_frame_by_the_other_input() -> None
     assert "--pose-yaw-offset" in findings_of(both, "command")[0].advice[0]
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_slip_lag_and_noise_are_no_contradiction(subtests: pytest.Subtests) -> None:
     for drive in [
         SKID_STEERED,
