@@ -21,7 +21,7 @@ def excite(
     ] = "8x8",
     minutes: Annotated[float, typer.Option(metavar="MIN", help="The drive takes no longer.")] = 1.0,
     vehicle: Annotated[
-        str | None, optional("NAME", "Limits and size of husky, jackal, warthog or land-tamer.")
+        str | None, optional("NAME", "Limits and size of husky, jackal, warthog, turtlebot4, and others.")
     ] = None,
     model: Annotated[
         Path | None, optional("FILE", "Model to start from; the learner's prior by default.")

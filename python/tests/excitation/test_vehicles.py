@@ -7,6 +7,7 @@ import pytest
 
 from slipwise.errors import SettingsError
 from slipwise.excitation import VEHICLES, vehicle_named
+from slipwise.logs import LogOptions
 from slipwise_sim.drive import TOP_SPEED, TOP_YAW_RATE
 from slipwise_sim.land_tamer import LandTamer
 
@@ -16,6 +17,12 @@ def test_every_vehicle_has_a_size_and_a_source() -> None:
         vehicle = vehicle_named(name)
         assert vehicle.radius > 0.0
         assert vehicle.source
+
+
+@pytest.mark.parametrize("name", ["husky", "jackal", "warthog", "turtlebot3-burger", "turtlebot4"])
+def test_vehicles_of_logs_have_a_drive_too(name: str) -> None:
+    assert vehicle_named(name).space.speed > 0.0
+    assert LogOptions(vehicle=name).vehicle == name
 
 
 def test_unknown_vehicle_is_refused_with_the_known_ones() -> None:
