@@ -2,6 +2,7 @@
 // All that changes what a learner learns.
 #pragma once
 
+#include "slipwise/disturbance/slip_disturbance.hpp"
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 #include "slipwise/online/stream_settings.hpp"
 
