@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kPieces = 12.0;   // that it takes to learn a segment, or so
 constexpr double kMostPieces = 8;  // that a push learns of what waits, unless they are due
-constexpr double kSpare = 0.1;     // [s] before it is due in which no push need come
+constexpr double kDone = 0.9;      // [s] after which it is learned, if pushes come until kReady or not
 constexpr int kSlices = 2;         // of refits that a push does beside what waits: some 100 us each
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -54,13 +54,13 @@ int pieces_now(const std::deque<StreamItem>& waiting, double newest, double pass
   if (waiting.empty() || !(passed > 0.0) || std::isinf(passed)) {
     return 1;
   }
-  const double left = known_at(waiting.front()) + kReady - newest;
+  const double left = known_at(waiting.front()) + kDone - newest;
   double pieces = 0.0;
   for (const StreamItem& item : waiting) {
     const bool is_segment = std::holds_alternative<DrivenSegment>(item) || std::holds_alternative<SlipSegment>(item);
     pieces += is_segment ? kPieces : 1.0;
   }
-  if (left - kSpare <= passed) {  // the next push may come too late
+  if (left <= passed) {  // the next push may come too late
     return static_cast<int>(pieces);
   }
   return static_cast<int>(std::ceil(std::clamp(pieces * passed / left, 1.0, kMostPieces)));
