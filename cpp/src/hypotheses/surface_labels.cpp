@@ -36,6 +36,13 @@ void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, con
   suspect(averages, law);
 }
 
+std::string SurfaceBank::name_of(const SurfaceCandidate& candidate) const {
+  if (candidate.kind == Kind::Known) {
+    return surfaces_[candidate.place].name;
+  }
+  return candidate.kind == Kind::Present ? surfaces_.present_name() : "";
+}
+
 /// How likely the label is on each candidate, by what labels have been worth: it names the surface, or another one. A
 /// label that names no surface speaks for those without a name of their own.
 Eigen::ArrayXd SurfaceBank::label_factors(const std::vector<SurfaceCandidate>& candidates) const {
@@ -43,12 +50,6 @@ Eigen::ArrayXd SurfaceBank::label_factors(const std::vector<SurfaceCandidate>& c
   if (label_.empty() || count < 2) {
     return Eigen::ArrayXd::Ones(count);
   }
-  const auto name_of = [&](const SurfaceCandidate& each) -> std::string {
-    if (each.kind == Kind::Known) {
-      return surfaces_[each.place].name;
-    }
-    return each.kind == Kind::Present ? surfaces_.present_name() : "";
-  };
   const bool known = std::ranges::any_of(candidates, [&](const auto& each) { return name_of(each) == label_; });
   Eigen::ArrayXd factors(count);
   for (Eigen::Index i = 0; i < count; ++i) {

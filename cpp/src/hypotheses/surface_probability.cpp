@@ -5,19 +5,6 @@
 #include <algorithm>
 
 namespace slipwise {
-namespace {
-
-using Kind = SurfaceCandidate::Kind;
-
-/// A surface that changed becomes another when it is taken.
-std::string name_of(const SurfaceBank& bank, const SurfaceCandidate& candidate) {
-  if (candidate.kind == Kind::Known) {
-    return bank.surfaces()[candidate.place].name;
-  }
-  return candidate.kind == Kind::Present ? bank.present_name() : "";
-}
-
-}  // namespace
 
 std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank) {
   if (!bank.settings().remember) {
@@ -25,12 +12,12 @@ std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank) {
   }
   const std::optional<SurfaceTrial>& trial = bank.trial();
   if (!trial) {
-    return {{.name = bank.present_name(), .probability = 1.0}};
+    return {{.name = bank.name_of({.kind = SurfaceCandidate::Kind::Present}), .probability = 1.0}};
   }
   std::vector<SurfaceProbability> found;
   const Eigen::VectorXd probabilities = trial->probabilities();
   for (std::size_t i = 0; i < trial->candidates().size(); ++i) {
-    const std::string name = name_of(bank, trial->candidates()[i]);
+    const std::string name = bank.name_of(trial->candidates()[i]);
     auto place = std::ranges::find(found, name, &SurfaceProbability::name);
     if (place == found.end()) {
       place = found.insert(place, {.name = name, .probability = 0.0});

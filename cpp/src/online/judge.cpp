@@ -17,11 +17,6 @@
 namespace slipwise {
 namespace {
 
-const MotionModel& baseline_model() {
-  static const MotionModel model({"none", {}, {}, {}}, {});
-  return model;
-}
-
 /// Driven by `other` inputs, where there are some.
 Eigen::Vector3d pose_after(const MotionModel& model, const Eigen::VectorXd& mean, const DrivenSegment& driven,
                            const std::optional<InputHistory>& other = std::nullopt) {
@@ -84,7 +79,7 @@ HeldOutPrediction judged(const TargetSegment& target, const LearnerSettings& set
           .nominal_nis = nominal_squared,
           .structure = structure,
           .measured = chart_of(directions, measured),
-          .baseline = pose_after(baseline_model(), Eigen::VectorXd(0), driven, target.baseline),
+          .baseline = pose_after(MotionModel(), Eigen::VectorXd(0), driven, target.baseline),
           .in_sample = pose_after(after.motion->model, after.motion->estimate.mean, driven),
           .learned_until = log.clock().stamp(at_start ? segment.start : std::min(used, segment.start))};
 }

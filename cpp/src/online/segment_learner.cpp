@@ -258,6 +258,12 @@ void SegmentLearner::consider_surfaces(double t) {
 
 void SegmentLearner::note_surfaces(std::size_t run, double t) { log_.say(hypotheses_.bank().take_events(), run, t); }
 
+/// What is known now was changed beside segments, at `t` [s].
+void SegmentLearner::note_change(std::size_t run, double t) {
+  note_surfaces(run, t);
+  known_.replace(now_known(known_.newest().until));
+}
+
 Knowledge SegmentLearner::now_known(double until) const {
   const auto motion = hypotheses_.posterior();  // what predicts best may count the lateness of poses as a delay
   return {
@@ -273,14 +279,12 @@ void SegmentLearner::change(const SegmentStream& stream,
                             const std::function<void(MotionHypotheses&, const DisturbanceModel&)>& change) {
   work_through(stream);
   change(hypotheses_, disturbance_.law());
-  note_surfaces(log_.run(), stream.newest());
-  known_.replace(now_known(known_.newest().until));
+  note_change(log_.run(), stream.newest());
 }
 
 void SegmentLearner::start_drive(const DriveStart& start, std::size_t run, double ended) {
   hypotheses_.start_drive(disturbance_.law(), start);
-  note_surfaces(run, ended);
-  known_.replace(now_known(known_.newest().until));
+  note_change(run, ended);
 }
 
 void SegmentLearner::begin_with(const SegmentStream& stream, const KnownBefore& known, const DisturbanceModel& law,
@@ -289,8 +293,7 @@ void SegmentLearner::begin_with(const SegmentStream& stream, const KnownBefore& 
   if (settings_.learn_disturbance) {
     disturbance_.begin_with(law);
   }
-  note_surfaces(log_.run(), stream.newest());
-  known_.replace(now_known(known_.newest().until));
+  note_change(log_.run(), stream.newest());
 }
 
 std::vector<std::string> SegmentLearner::add_surfaces(const SegmentStream& stream, const KnownBefore& other) {

@@ -57,8 +57,8 @@ class SurfaceBank {
   const std::vector<Surface>& surfaces() const { return surfaces_.all(); }
   /// The one that is driven on; empty if that is open, or it has no entry yet.
   std::optional<std::size_t> present() const { return surfaces_.present(); }
-  /// Its name; empty where there is none.
-  std::string present_name() const { return surfaces_.present_name(); }
+  /// The name of a candidate; empty where it has none, as one that changed: it becomes another when it is taken.
+  std::string name_of(const SurfaceCandidate& candidate) const;
   /// What competes to be it; empty if that is settled.
   const std::optional<SurfaceTrial>& trial() const { return trial_; }
   /// What happened since the last call.

@@ -91,6 +91,7 @@ class SegmentLearner {
   void publish(const DrivenSegment& segment, double wheel_interval);
   void consider_surfaces(double t);
   void note_surfaces(std::size_t run, double t);
+  void note_change(std::size_t run, double t);
   std::vector<DrivenSegment> complete_now(const SegmentStream& stream) const;
   Knowledge now_known(double until) const;
 
