@@ -42,7 +42,7 @@ from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.logs.findings.checks import findings_in, findings_of_log
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import Seen, WholeLog
-from slipwise.logs.findings.steering import by_throttle, driven_sideways, steered
+from slipwise.logs.findings.steering import Commanded
 from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Log, has_course
 from slipwise.logs.motion_windows import evidence_of
@@ -162,9 +162,7 @@ def found_contradictions(
         positions=has_course(log.runs),
         gyro=has_course(log.runs) or gyro_alone(log.runs),
         sensor_yaw=settings.sensor_extrinsics.yaw,
-        steered=steered(log.runs),
-        sideways=driven_sideways(log.runs),
-        throttle=by_throttle(log.runs),
+        commanded=Commanded.of(log.runs),
     )
     unknown_after = settings.segment.unknown_after
     return (

@@ -32,6 +32,7 @@ from slipwise.errors import SettingsError
 from slipwise.logs.findings.checks import findings_in, findings_of_log, not_shown_yet
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import Seen, WholeLog
+from slipwise.logs.findings.steering import Commanded
 from slipwise.logs.log import Log
 from slipwise.models import Model, parse_model
 from slipwise.models.schema import ModelFile, Range
@@ -277,9 +278,11 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             positions=self._positions,
             gyro=self._positions or self._gyro_alone,
             sensor_yaw=self._settings.sensor_extrinsics.yaw,
-            steered=bool(self._wheelbase) and not throttle,
-            throttle=throttle,
-            sideways=self._sideways["command"].span is not None,
+            commanded=Commanded(
+                steered=bool(self._wheelbase) and not throttle,
+                sideways=self._sideways["command"].span is not None,
+                throttle=throttle,
+            ),
         )
 
     def _remembered(self, content: ModelFile, learned: Learned) -> ModelFile:

@@ -38,7 +38,7 @@ from slipwise.logs.findings.sensor_place import SensorOffCentre
 from slipwise.logs.findings.source_scale import SourceScale
 from slipwise.logs.findings.sources import IdleSource, TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
-from slipwise.logs.findings.steering import NotSteered, by_throttle, driven_sideways, steered
+from slipwise.logs.findings.steering import Commanded, NotSteered
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
 from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
 from slipwise.logs.held import UNKNOWN_AFTER
@@ -205,9 +205,7 @@ def seen_in(
         positions=has_course(log.runs),
         gyro=False,
         sensor_yaw=sensor_yaw,
-        steered=steered(runs),
-        sideways=driven_sideways(runs),
-        throttle=by_throttle(runs),
+        commanded=Commanded.of(runs),
     )
 
 

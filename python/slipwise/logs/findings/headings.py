@@ -163,18 +163,18 @@ class OtherUnit(Check):
 
     def look(self, seen: Seen) -> Finding | None:
         """Compare slow with fast commands: a drive that is capped does less of fast ones."""
+        if seen.input_name != "command" or seen.commanded.throttle or not _agree(seen.driven):
+            return None
         turns, w = seen.agreement(seen.input_name), seen.windows
         asked = np.hypot(w.forward, w.sideways)
         along = (asked > _LEAST) & (np.abs(w.rotation) < MOST_TURN) & (np.abs(w.turn) < MOST_TURN)
-        if seen.input_name != "command" or seen.throttle or along.sum() < _ENOUGH_OF_EACH:
+        if along.sum() < _ENOUGH_OF_EACH:
             return None
-        if not _agree(seen.driven):
-            return None
-        asked, done = asked[along], (w.distance[along] / asked[along])
+        asked, done = asked[along], w.distance[along] / asked[along]
         slow = asked <= np.median(asked)
         if slow.all():  # one speed alone
             return None
-        scale, *halves = (float(np.median(done[part])) for part in (slow | ~slow, slow, ~slow))
+        scale, *halves = (float(np.median(part)) for part in (done, done[slow], done[~slow]))
         unit = likely_commands(scale)
         alike = all(abs(half / scale - 1.0) < _ALIKE for half in halves)
         well_turned = turns.turning > _ENOUGH_TURN and turns.yaw_ratio > _TURNS_MORE * scale

@@ -10,6 +10,7 @@ from functools import cached_property
 from slipwise import _core
 from slipwise.logs.findings.driven_windows import DrivenWindows, driven_windows
 from slipwise.logs.findings.plausibility import Agreement, agreement
+from slipwise.logs.findings.steering import Commanded
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log
 from slipwise.logs.motion_windows import MotionWindows, motion_windows
@@ -52,9 +53,7 @@ class Seen:
     positions: bool  # headings are courses, which tell nothing of a heading
     gyro: bool  # turns of a gyro are learned from
     sensor_yaw: float  # how the pose sensor is known to be turned on the robot [rad]
-    steered: bool = False  # a wheelbase was given with the commands
-    sideways: bool = False  # the commands drive the robot sideways
-    throttle: bool = False  # they are throttle and steering, which have no units
+    commanded: Commanded = Commanded()  # what the commands are
 
     @property
     def words(self) -> InputWords:

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,25 @@ _TURNS = 0.2  # [rad] in it at least, by both, to one side
 _ENOUGH = 5  # windows
 
 
+@dataclass(frozen=True)
+class Commanded:
+    """What the commands of a robot are, beside speeds."""
+
+    steered: bool = False  # a wheelbase was given with them
+    sideways: bool = False  # they drive the robot sideways
+    throttle: bool = False  # they are throttle and steering, which have no units
+
+    @classmethod
+    def of(cls, runs: Sequence[Run]) -> Commanded:
+        """Look at the commands of all runs."""
+        commands = [run.commands for run in runs if run.commands is not None]
+        return cls(
+            steered=any(each.wheelbase is not None for each in commands),
+            sideways=driven_sideways(runs),
+            throttle=any(each.car is not None for each in commands),
+        )
+
+
 class NotSteered(Check):
     """Commands with a wheelbase that no robot which steers can follow."""
 
@@ -30,9 +50,9 @@ class NotSteered(Check):
 
     def look(self, seen: Seen) -> Finding | None:
         """Look for sideways commands, and for turns at standstill."""
-        if not seen.steered or seen.input_name != "command":
+        if not seen.commanded.steered or seen.input_name != "command":
             return None
-        if seen.sideways:
+        if seen.commanded.sideways:
             return self.of_sideways()
         w = seen.windows
         stands = (np.hypot(w.forward, w.sideways) < _STANDS) & (w.distance < _STANDS)
@@ -54,16 +74,6 @@ class NotSteered(Check):
 
 
 _ADVICE = "leave the wheelbase away"
-
-
-def steered(runs: Iterable[Run]) -> bool:
-    """Whether a wheelbase was given with the commands of some run."""
-    return any(run.commands is not None and run.commands.wheelbase is not None for run in runs)
-
-
-def by_throttle(runs: Iterable[Run]) -> bool:
-    """Whether the commands of some run are throttle and steering."""
-    return any(run.commands is not None and run.commands.car is not None for run in runs)
 
 
 def driven_sideways(runs: Iterable[Run]) -> bool:
