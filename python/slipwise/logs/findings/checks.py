@@ -40,6 +40,7 @@ from slipwise.logs.findings.sources import IdleSource, TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
 from slipwise.logs.findings.steering import Commanded, NotSteered
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
+from slipwise.logs.findings.towed_poses import TowedPoses
 from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log, Run, has_course
@@ -81,6 +82,7 @@ WHOLE: tuple[Check, ...] = (
     LateAnswers(),
     Overridden(),
     FrozenPoses(),
+    TowedPoses(),
     DriftingPoses(),
     AskewAttitude(),
     ClockOffset(),
@@ -98,6 +100,8 @@ OF_STREAM: tuple[Check, ...] = (
     LateAnswers(),
     Overridden(),
     FrozenPoses(),
+    TowedPoses(),
+    TowedPoses(),
     DriftingPoses(),
     AskewAttitude(),
     ClockOffset(),
