@@ -15,6 +15,7 @@ from slipwise.logs.findings.command_stops import CommandTimeout
 from slipwise.logs.findings.course_heading import CourseHeading
 from slipwise.logs.findings.drifting_poses import DriftingPoses
 from slipwise.logs.findings.encoders import ReversalJumps, WheelSpikes
+from slipwise.logs.findings.filled_poses import FilledPoses
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.gyro_scale import GyroScale, GyroTurnsOtherwise
 from slipwise.logs.findings.headings import (
@@ -83,6 +84,7 @@ WHOLE: tuple[Check, ...] = (
     Overridden(),
     FrozenPoses(),
     TowedPoses(),
+    FilledPoses(),
     DriftingPoses(),
     AskewAttitude(),
     ClockOffset(),
@@ -101,7 +103,9 @@ OF_STREAM: tuple[Check, ...] = (
     Overridden(),
     FrozenPoses(),
     TowedPoses(),
+    FilledPoses(),
     TowedPoses(),
+    FilledPoses(),
     DriftingPoses(),
     AskewAttitude(),
     ClockOffset(),
