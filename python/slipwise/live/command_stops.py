@@ -99,7 +99,9 @@ class CommandEnds:
         if self._given is not None:
             until = t if isinstance(sample, Command) else t - COMES_WITHIN
             due = [
-                Command(at, 0.0, 0.0) for at in end_stamps(self._given, seconds, until) if at > self._ended
+                Command(at, 0.0, 0.0, ended=True)
+                for at in end_stamps(self._given, seconds, until)
+                if at > self._ended
             ]
             self._ended = due[-1].t if due else self._ended
         if isinstance(sample, Command):

@@ -57,6 +57,8 @@ class RecentLog:
                 kind = sample.source
             else:
                 self._first, self._positions = sample.source, position
+        elif isinstance(sample, Command) and sample.ended:  # nobody sent it
+            return
         elif isinstance(sample, Command | Wheels):
             row = (sample.t, sample.v, sample.vy, sample.omega)
         elif isinstance(sample, Reading) and sample.column == COLUMN:

@@ -9,7 +9,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.errors import LogError
-from slipwise.logs.log import CarCommands, Inputs, Log, Run
+from slipwise.logs.log import CarCommands, Log, Run
 from slipwise.logs.options import LogOptions
 
 _LARGEST = 1.001  # of a command, with rounding
@@ -39,7 +39,7 @@ def with_car_commands(log: Log, options: LogOptions) -> Log:
             continue
         car_commands = CarCommands(given.v, given.omega, car.top_speed, car.curvature)
         v, vy, omega = (np.ascontiguousarray(rows[:, k]) for k in (1, 2, 3))
-        runs.append(replace(run, commands=Inputs(given.t, v, vy, omega, car_commands)))
+        runs.append(replace(run, commands=replace(given, v=v, vy=vy, omega=omega, car=car_commands)))
     note = f"commands are throttle and steering of {options.vehicle}, whose curves are learned"
     return replace(log, runs=tuple(runs), notes=(*log.notes, note))
 

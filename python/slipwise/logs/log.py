@@ -80,7 +80,7 @@ class Inputs(_Series):
     omega: Floats  # [N] rad/s, counter-clockwise
     car: CarCommands | None = None  # throttle and steering, where v and omega are about what they do
     wheelbase: float | None = None  # m, of commands to a robot that steers
-    ended: bool = False  # zeros stand among them where a watchdog ended one, as was given
+    ended: Bools | None = None  # [N] zeros of a watchdog that ended the command before, as was given
 
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "v", "vy", "omega"))
@@ -284,12 +284,12 @@ def _check_series(series: Inputs | Poses | Forces, *, required: tuple[str, ...])
     for column in (
         column
         for column in fields(series)
-        if column.init and column.name not in ("course", "car", "wheelbase", "ended")
+        if column.init and column.name not in ("course", "car", "wheelbase")
     ):
         values = getattr(series, column.name)
         if values is None:
             continue
-        expected = np.int64 if column.name == "frame" else np.float64
+        expected = {"frame": np.int64, "ended": np.bool_}.get(column.name, np.float64)
         if not isinstance(values, np.ndarray) or values.dtype != expected or values.ndim != 1:
             raise LogError(f"{name}.{column.name} is not a one-dimensional array of {expected.__name__}")
         if len(values) != length:

@@ -16,10 +16,11 @@ class Twist:
     vy: float = 0.0  # m/s, to the left
 
 
+@dataclass(frozen=True, slots=True)
 class Command(Twist):
     """A command."""
 
-    __slots__ = ()
+    ended: bool = False  # zeros of a watchdog that ended the command before, as was given
 
 
 class Wheels(Twist):

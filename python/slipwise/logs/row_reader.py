@@ -143,7 +143,8 @@ class RowReader:
             beyond = beyond_words(v, omega) if self._options.car is not None else ""
             if beyond:
                 raise LogError(beyond, advice="--command-scale divides it")
-            yield Command(view.t, v, omega, vy)
+            ended = found is not None and found.ended is not None and bool(found.ended[_NOW] == 1.0)
+            yield Command(view.t, v, omega, vy, ended)
 
     def _read_wheels(self, view: _View, notes: list[str]) -> Iterator[Measurement]:
         found = wheel_columns(view, self._options, view.tally, notes)

@@ -78,7 +78,7 @@ def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
 
 
 def to_inputs(stream: RawStream, tally: Tally) -> Inputs | None:
-    """Make inputs of the columns v, omega and, if there is one, vy; None if nothing is left.
+    """Make inputs of the columns v, omega and, if there are, vy and ended; None if nothing is left.
 
     Raises:
         LogError: most speeds are absurd, so that their unit is wrong.
@@ -87,7 +87,14 @@ def to_inputs(stream: RawStream, tally: Tally) -> Inputs | None:
     if len(clean.t) == 0:
         return None
     vy = clean.columns.get("vy", np.zeros(len(clean.t)))
-    return Inputs(t=clean.t, v=clean.columns["v"], vy=vy, omega=clean.columns["omega"])
+    ended = clean.columns.get("ended", np.zeros(len(clean.t))) == 1.0
+    return Inputs(
+        t=clean.t,
+        v=clean.columns["v"],
+        vy=vy,
+        omega=clean.columns["omega"],
+        ended=ended if ended.any() else None,
+    )
 
 
 def to_poses(stream: RawStream, tally: Tally) -> Poses:

@@ -261,11 +261,11 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
 
     def stream(role: str, columns: dict[str, Floats]) -> RawStream:
         values = {key: column[index] for key, column in columns.items()}
-        optional = frozenset((*OPTIONAL_POSE_COLUMNS, *FORCE))
+        optional = frozenset((*OPTIONAL_POSE_COLUMNS, *FORCE, "ended"))
         return RawStream(role, t, values, numbers, table.place, optional)
 
     extra = {key: values[index] for key, values in rows.extra.items()}
-    commands = _inputs(stream("commands", rows.commands.columns()), tally) if rows.commands else None
+    commands = _inputs(stream("commands", _with_ends(rows.commands)), tally) if rows.commands else None
     wheels = _inputs(stream("wheels", rows.wheels.columns()), tally) if rows.wheels else None
     forces = to_forces(_filled(stream("forces", rows.forces)), tally) if rows.forces else None
     poses, source = empty_poses(), ""
@@ -285,6 +285,12 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
             others, source = dict(zip(names[1:], further, strict=True)), names[0]
     extra = {"t": t, **extra} if extra else {}
     return Run(name, commands, wheels, poses, extra, others, source if others else "", forces=forces)
+
+
+def _with_ends(commands: InputColumns) -> dict[str, Floats]:
+    """Return the columns of commands, and which rows end one, where the table says so."""
+    columns = commands.columns()
+    return columns if commands.ended is None else {**columns, "ended": commands.ended}
 
 
 def _by_source(whole: RawStream, number: Ints, count: int) -> Iterator[RawStream]:
@@ -311,6 +317,6 @@ def _inputs(stream: RawStream, tally: Tally) -> Inputs | None:
 def _filled(stream: RawStream) -> RawStream:
     """Return the rows that hold any of the columns."""
     there = np.zeros(len(stream.t), bool)
-    for values in stream.columns.values():
-        there |= np.isfinite(values)
+    for name, values in stream.columns.items():
+        there |= np.isfinite(values) & (name != "ended")
     return stream.select(there)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NoReturn
 
 import numpy as np
@@ -45,6 +45,7 @@ class InputColumns:
     v: Floats
     vy: Floats | None
     omega: Floats
+    ended: Floats | None = None  # 1 where zeros say that the command before ended
 
     def columns(self) -> dict[str, Floats]:
         """Return the columns by name, without a sideways speed where there is none."""
@@ -99,6 +100,14 @@ def require_columns(table: Columns, *, poses: bool, described: bool = False, car
 def command_columns(
     table: Columns, options: LogOptions, tally: Tally, notes: list[str]
 ) -> InputColumns | None:
+    """Return the commanded twist per row, or None where the table has no command."""
+    found = _commanded(table, options, tally, notes)
+    if found is None or "cmd_ended" not in table.names:
+        return found
+    return replace(found, ended=table.numbers("cmd_ended", tally))
+
+
+def _commanded(table: Columns, options: LogOptions, tally: Tally, notes: list[str]) -> InputColumns | None:
     """Return the commanded twist per row, or None where the table has no command.
 
     `cmd_vy` is the sideways partner of `cmd_vx`. Where a table also has a `cmd_v` that differs from `cmd_vx`,

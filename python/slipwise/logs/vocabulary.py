@@ -59,6 +59,9 @@ COLUMNS = (
     Column("cmd_omega", "command", "number", "rad/s", "commanded yaw rate, counter-clockwise", "shared"),
     Column("cmd_curvature", "command", "number", "1/m", "commanded curvature"),
     Column("cmd_steer", "command", "number", "rad", "commanded steering angle"),
+    Column(
+        "cmd_ended", "command", "integer", "", "1 where zeros say that the command before ended", "shared"
+    ),
     Column("cmd_dir", "command", "number", "rad", "commanded direction of travel, from the robot's x axis"),
     Column(
         "odo_v",

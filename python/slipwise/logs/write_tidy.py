@@ -138,6 +138,8 @@ def _put_inputs(rows: _Rows, run: Run) -> None:
         at = rows.of(run.commands.t)
         rows.put("throttle", at, car.throttle)
         rows.put("steering", at, car.steering)
+    if run.commands is not None and run.commands.ended is not None:
+        rows.put("cmd_ended", rows.of(run.commands.t), run.commands.ended.astype(np.float64))
     for prefix, inputs in (("cmd", None if car is not None else run.commands), ("odo", run.wheels)):
         if inputs is not None:
             at = rows.of(inputs.t)
@@ -179,4 +181,4 @@ def _joined(name: str, parts: list[dict[str, NDArray[Any]]]) -> Any:
         else:
             chunks.append(pa.array(values.astype(np.float64), mask=np.isnan(values.astype(np.float64))))
     column = pa.chunked_array(chunks)
-    return column.cast(pa.int64()) if name in ("frame", "pose_new") else column
+    return column.cast(pa.int64()) if name in ("cmd_ended", "frame", "pose_new") else column

@@ -84,10 +84,11 @@ class IdleSource(TwoSources):
             return None
         zeros, moves, asked, done, place = 0, 0, 0.0, 0.0, ""
         for run in whole.log.runs:
-            if run.commands is None or len(run.commands) < 2 or run.commands.ended:
+            if run.commands is None or len(run.commands) < 2:
                 continue
-            driver = run.commands.select((run.commands.twists() != 0.0).any(axis=1))
-            at = _interrupted(run.commands, driver)
+            sent = run.commands if run.commands.ended is None else run.commands.select(~run.commands.ended)
+            driver = sent.select((sent.twists() != 0.0).any(axis=1))
+            at = _interrupted(sent, driver)
             motion = CommandedMotion.between(driver, run.poses)
             zeros, moves = zeros + len(at), moves + len(driver)
             if len(at) and motion is not None:

@@ -8,11 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slipwise.logs import Inputs, Poses, open_log
+from slipwise.live.recent_log import RecentLog
+from slipwise.logs import Inputs, Log, LogOptions, Poses, Run, open_log, save_log
+from slipwise.logs.command_timeout import with_ended_commands
 from slipwise.logs.findings.checks import findings_of
 from slipwise.logs.findings.command_stops import CommandStops
 from slipwise.logs.findings.commanded_motion import CommandedMotion
 from slipwise.logs.log import Floats
+from slipwise.logs.measurements import Command, Pose
+from slipwise.logs.row_reader import RowReader
 
 DELAY, WAITS = 0.1, 0.4  # s
 
@@ -63,8 +67,8 @@ def test_parts_have_all_steps_and_the_command_in_force() -> None:
     assert max(each.seconds for each in parts) < 30.2
 
 
-def test_zeros_of_a_watchdog_that_was_given_are_no_second_source(tmp_path: Path) -> None:
-    """A robot that is commanded every second stops after half of it: `--command-timeout` was advised."""
+def rare_commands(folder: Path) -> Path:
+    """A robot that is commanded every second stops after half of it: `--command-timeout` is advised."""
     t = np.arange(0.0, 120.0, 0.05)
     speed = np.where(t // 10.0 % 2.0 == 0.0, 0.8, 0.5)
     x = np.cumsum(0.05 * np.where(t % 1.0 < 0.5, speed, 0.0))
@@ -73,9 +77,76 @@ def test_zeros_of_a_watchdog_that_was_given_are_no_second_source(tmp_path: Path)
         f"{at:.2f},{f'{v},0' if said else ','},{place:.4f},0,0"
         for at, v, said, place in zip(t.tolist(), speed.tolist(), given.tolist(), x.tolist(), strict=True)
     ]
-    path = tmp_path / "rare.csv"
+    path = folder / "rare.csv"
     path.write_text("t,cmd_v,cmd_omega,x,y,yaw\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    return path
+
+
+def test_zeros_of_a_watchdog_that_was_given_are_no_second_source(tmp_path: Path) -> None:
+    path = rare_commands(tmp_path)
     (found,) = findings_of(open_log(path), "command")
     assert found.kind == "command-timeout"
     assert found.evidence == pytest.approx(0.5, abs=0.051)
     assert findings_of(open_log(path, command_timeout=0.5), "command") == ()
+
+
+@pytest.mark.parametrize("ending", ["csv", "csv.gz", "parquet"])
+def test_zeros_of_a_watchdog_are_known_in_the_table_that_was_converted(tmp_path: Path, ending: str) -> None:
+    log = open_log(rare_commands(tmp_path), command_timeout=0.5)
+    assert save_log(log, tmp_path / f"converted.{ending}") == ()
+    again = open_log(tmp_path / f"converted.{ending}")
+    given, read = log.runs[0].commands, again.runs[0].commands
+    assert given is not None
+    assert read is not None
+    assert given.ended is not None
+    assert read.ended is not None
+    np.testing.assert_array_equal(read.rows(), given.rows())
+    np.testing.assert_array_equal(read.ended, given.ended)
+    assert int(read.ended.sum()) == 3 * 119
+    assert findings_of(again, "command") == ()
+
+
+def test_zeros_of_a_watchdog_are_not_written_as_messages(tmp_path: Path) -> None:
+    """A topic holds what was sent; the option is given again with the bag."""
+    log = open_log(rare_commands(tmp_path), command_timeout=0.5)
+    (left_out,) = save_log(log, tmp_path / "converted.mcap")
+    assert left_out.reason.startswith("zeros that end commands (--command-timeout)")
+    assert left_out.count == 3 * 119
+    (found,) = findings_of(open_log(tmp_path / "converted.mcap"), "command")
+    assert found.kind == "command-timeout"
+    assert findings_of(open_log(tmp_path / "converted.mcap", command_timeout=0.5), "command") == ()
+
+
+def test_a_second_source_is_found_beside_a_watchdog_that_was_given() -> None:
+    t = np.round(np.arange(0.0, 120.0, 0.1), 9)
+    rest, speed = np.zeros_like(t), np.where(t % 20.0 < 10.0, 0.8, 0.5)
+    x = np.cumsum(0.1 * speed)
+    idle = np.sort(np.concatenate((t, t[1::2] - 0.05)))
+    v = np.where(np.isin(idle, t), np.interp(idle, t, speed), 0.0)
+    commands = Inputs(t=idle, v=v, vy=0.0 * v, omega=0.0 * v)
+    poses = Poses(t=t, x=x, y=rest, yaw=rest, frame=np.zeros(len(t), np.int64))
+    log = with_ended_commands(Log(runs=(Run("a", commands, None, poses),)), 0.5)
+    assert "two-sources" in {each.kind for each in findings_of(log, "command")}
+
+
+def test_a_live_node_hears_no_second_source_in_zeros_of_a_log_or_of_a_line() -> None:
+    marked, sent = RecentLog("command", 0.5), RecentLog("command", 0.5)
+    for k in range(2400):
+        t, run = 0.05 * k, k % 20 < 10
+        for recent, ended in ((marked, True), (sent, False)):
+            if k % 20 == 0:
+                recent.take(Command(t, 0.8, 0.0))
+            elif k % 20 in (10, 14, 18):
+                recent.take(Command(t, 0.0, 0.0, ended=ended))
+            recent.take(Pose(t, 0.4 * (k // 20) + 0.04 * (k % 20 if run else 10), 0.0, 0.0))
+            recent.found()
+    assert marked.found() == ()
+    assert "two-sources" in {each.kind for each in sent.found()}
+    row = RowReader(LogOptions()).read(
+        {"t": "1", "cmd_v": "0", "cmd_omega": "0", "cmd_ended": "1"}, ("t", "cmd_v", "cmd_omega", "cmd_ended")
+    )
+    assert row.measurements == [Command(1.0, 0.0, 0.0, ended=True)]
+    plain = RowReader(LogOptions()).read(
+        {"t": "1", "cmd_v": "0", "cmd_omega": "0"}, ("t", "cmd_v", "cmd_omega")
+    )
+    assert plain.measurements == [Command(1.0, 0.0, 0.0)]
