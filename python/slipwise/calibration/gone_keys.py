@@ -12,21 +12,24 @@ MOVED = {
     "live.host": "live.address",
 }
 
-_OPTION = "an option of the command line alone: "
+_OPTION = "an option of the command line alone, where slipwise convert takes it for logs of a fleet: "
+_OF_VEHICLE = "a key of the file of log.vehicle, or "
 _ARRIVES = "gone: it follows from what arrives"
 _CONSTANT = "a constant of slipwise"
 
 #: What holds now in place of each key. A constant that the tables still have is read for this release.
 GONE = {
     **{f"log.{name}": _OPTION + f"--{name.replace('_', '-')}" for name in (
-        "wheel_scale", "pose_yaw_offset", "poses", "pose_clock_offset", "start", "end",
+        "poses", "pose_clock_offset", "start", "end",
     )},
-    **{f"log.{name}": f"a key of the file of log.vehicle, or --{name.replace('_', '-')}" for name in (
-        "left_joints", "right_joints", "wheelbase",
+    "log.pose_yaw_offset": "sensor_extrinsics.yaw with the other sign, or --pose-yaw-offset, which turns "
+    "roll and pitch too",
+    **{f"log.{name}": _OF_VEHICLE + f"--{name.replace('_', '-')}" for name in (
+        "left_joints", "right_joints", "wheelbase", "wheel_scale",
     )},
     "log.most_unpacked": "gone: unpack a larger file first",
     "log.most_fetched": "gone: copy a larger file first",
-    **{f"live.{name}": _OPTION + f"--{name}" for name in (
+    **{f"live.{name}": f"an option of the command line alone: --{name}" for name in (
         "name", "transport", "input", "model", "memory", "cache", "surface",
     )},
     "live.domain": "gone: set ROS_DOMAIN_ID",

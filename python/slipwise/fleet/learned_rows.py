@@ -25,6 +25,7 @@ from slipwise.fleet.knowledge_file import knowledge_text
 from slipwise.fleet.vehicle_numbers import VehicleNumbers, vehicle_numbers
 from slipwise.logs import Log, open_log
 from slipwise.logs.remote import lent, remote_version
+from slipwise.logs.vehicle_description import load_vehicle
 from slipwise.models.body_force import without_force
 from slipwise.models.car import curve_gains
 from slipwise.models.model import Model
@@ -145,8 +146,12 @@ def log_hash(path: Path) -> str:
 
 
 def settings_hash(settings: Settings) -> str:
-    """Return the SHA-256 of settings, however they were written."""
-    text = json.dumps(settings.model_dump(mode="json"), sort_keys=True)
+    """Return the SHA-256 of settings, however they were written, and of the vehicle's file that they name."""
+    said = settings.model_dump(mode="json")
+    vehicle = said["log"]["vehicle"]
+    if vehicle is not None and "." in vehicle:
+        said["vehicle_file"] = load_vehicle(vehicle).model_dump(mode="json")
+    text = json.dumps(said, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 

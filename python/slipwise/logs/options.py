@@ -119,6 +119,8 @@ class LogOptions(LogFields):
         for name, size in sizes.items():
             if size is not None and not getattr(self, name):
                 object.__setattr__(self, name, size)
+        if self.wheel_scale == (1.0, 1.0):
+            object.__setattr__(self, "wheel_scale", described.wheel_scale)
 
     def _check_sources(self) -> None:
         """Refuse further sources without a first, or two of one name."""

@@ -8,17 +8,25 @@ from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.models.yaml_file import parse_yaml, read_yaml
 from slipwise.validation_text import first_problem
 
+
+def _not_0(factor: float) -> float:
+    if factor == 0.0:
+        raise ValueError("a factor is not 0")
+    return factor
+
+
 Metres = Annotated[float, Field(ge=-50.0, le=50.0)]
 Size = Annotated[float, Field(gt=0.0, le=50.0)]  # m
 Angle = Annotated[float, Field(ge=-6.3, le=6.3)]  # rad
 Std = Annotated[float, Field(gt=0.0, le=10.0)]  # m/s
+Factor = Annotated[float, Field(ge=-1e6, le=1e6), AfterValidator(_not_0)]
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 
 _SECTION = "vehicle"
@@ -92,6 +100,7 @@ class VehicleDescription(_Part):
     right_joints: list[Name] = []
     wheelbase: Size | None = None  # m, of a car that is commanded or measured by its steering angle
     throttle_steering: ThrottleSteering | None = None  # of a wheelbase, where commands have no units
+    wheel_scale: tuple[Factor, Factor] = (1.0, 1.0)  # of the speed and the yaw rate that its wheels tell
     wheels: list[WheelDescription] = Field([], max_length=_MOST_WHEELS)
     hinge: HingeDescription | None = None
     rolling_std: Std = 0.02  # m/s, along the rollers' axes or a plain wheel's direction

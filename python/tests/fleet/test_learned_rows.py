@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import warnings
 from dataclasses import replace
@@ -10,13 +11,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from contradictory_logs import sound_log, turned
+from contradictory_logs import scaled, sound_log, turned
 
-from slipwise.calibration import Settings, load_settings
+from slipwise.calibration import Settings, load_settings, make_settings
 from slipwise.errors import OlderNames
 from slipwise.fleet import LogTask, learn_task
 from slipwise.fleet.learned_rows import key_of, log_hash, settings_hash
 from slipwise.logs import Log, save_log
+from slipwise.logs.vehicle_description import load_vehicle
 from slipwise_sim import thesis_drive
 from slipwise_sim.known_robot import KnownRobot, known_run
 
@@ -76,6 +78,56 @@ def test_older_names_of_a_fleets_settings_are_not_said_again_for_each_log(tmp_pa
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         learn_task(LogTask(str(path), "one", str(settings), log_hash(path)))
+
+
+@pytest.mark.slow
+def test_a_fleet_says_signs_and_turned_sensors_in_present_keys(tmp_path: Path) -> None:
+    """What --wheel-scale and --pose-yaw-offset say of one log; older keys name both."""
+    sound = sound_log()
+    wheels = replace(sound, runs=tuple(replace(run, commands=None) for run in sound.runs))
+    log = scaled(turned(wheels, 1.2), "wheels", 0.5)
+    path, settings, vehicle = (tmp_path / name for name in ("log.csv", "fleet.toml", "robot.yaml"))
+    save_log(log, path)
+    assert "turned by" in learn_task(LogTask(str(path), "one", "", log_hash(path))).failure
+    vehicle.write_text(
+        "vehicle:\n  tracks: {radius: 0.1, separation: 0.5}\n  wheel_scale: [2, 1]\n", encoding="utf-8"
+    )
+    settings.write_text(f'[log]\nvehicle = "{vehicle}"\n[sensor_extrinsics]\nyaw = 1.2\n', encoding="utf-8")
+    learned = learn_task(LogTask(str(path), "one", str(settings), log_hash(path)))
+    assert learned.failure == ""
+    for name, true in (("lon.V", -0.05), ("ang.w", -0.4)):
+        (row,) = (each for each in learned.rows if each.parameter == name)
+        assert row.value == pytest.approx(true, abs=3.0 * row.std)
+
+
+@pytest.mark.parametrize(
+    ("line", "now"),
+    [
+        ("wheel_scale = [2.0, 1.0]", "a key of the file of log.vehicle, or --wheel-scale"),
+        ("pose_yaw_offset = 0.1", "sensor_extrinsics.yaw with the other sign, or --pose-yaw-offset"),
+        ("start = 3.0", "where slipwise convert takes it for logs of a fleet: --start"),
+    ],
+)
+def test_older_keys_name_what_a_fleet_has_in_place_of_them(tmp_path: Path, line: str, now: str) -> None:
+    path = tmp_path / "fleet.toml"
+    path.write_text(f"[log]\n{line}\n", encoding="utf-8")
+    with pytest.warns(OlderNames, match=now):
+        load_settings(path)
+
+
+def test_another_vehicle_in_the_file_of_the_settings_is_another_key(tmp_path: Path) -> None:
+    found = []
+    for number, scale in enumerate(("[1, 1]", "[1, -1]", "[1, -1]  # again")):
+        path = tmp_path / str(number) / "robot.yaml"
+        path.parent.mkdir()
+        path.write_text(
+            f"vehicle:\n  tracks: {{radius: 0.1, separation: 0.5}}\n  wheel_scale: {scale}\n",
+            encoding="utf-8",
+        )
+        load_vehicle.cache_clear()
+        with contextlib.chdir(path.parent):
+            found.append(settings_hash(make_settings({"log": {"vehicle": "robot.yaml"}})))
+    assert found[0] != found[1] == found[2]
 
 
 def test_other_settings_are_another_key(tmp_path: Path) -> None:

@@ -34,6 +34,17 @@ def test_sizes_of_a_preset_are_taken_where_none_are_given() -> None:
     assert husky.wheels is None
 
 
+def test_a_file_says_how_its_wheels_count(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    text = "vehicle:\n  tracks: {radius: 0.1, separation: 0.5}\n  wheel_scale: [0.5, -1]\n"
+    path.write_text(text, encoding="utf-8")
+    assert LogOptions(vehicle=str(path)).wheel_scale == (0.5, -1.0)
+    assert LogOptions(vehicle=str(path), wheel_scale=(2.0, 1.0)).wheel_scale == (2.0, 1.0)
+    (tmp_path / "none.yaml").write_text(text.replace("-1", "0"), encoding="utf-8")
+    with pytest.raises(SettingsError, match="a factor is not 0"):
+        LogOptions(vehicle=str(tmp_path / "none.yaml"))
+
+
 def test_a_robotino_that_drives_ahead_turns_its_side_wheels_against_each_other() -> None:
     layout = load_vehicle("robotino").layout
     assert layout is not None
