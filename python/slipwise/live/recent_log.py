@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections import deque
+from collections import Counter, deque
 from dataclasses import replace
 
 import numpy as np
@@ -14,14 +14,16 @@ from slipwise.logs.findings.checks import OF_STREAM, looked_at
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import WholeLog
 from slipwise.logs.gyro import COLUMN
-from slipwise.logs.log import Inputs, Log, Poses, Run, empty_poses
+from slipwise.logs.log import Inputs, LeftOut, Log, Poses, Run, empty_poses
 from slipwise.logs.navsat import course_of_path
+from slipwise.logs.stamps import BACKWARD, GOES_BACK
 
 KEPT = 120.0  # s
 LOOKED_EVERY = 60.0  # s
 MOST = 20_000  # samples of a kind
 
 _Row = tuple[float, ...]
+_NAMES: dict[type | str, str] = {Command: "commands", Wheels: "wheels", Pose: "poses"}
 
 
 class RecentLog:
@@ -37,6 +39,7 @@ class RecentLog:
         self._rows: dict[type | str, deque[_Row]] = {}  # by the kind; of further sources, by the name
         self._first = ""  # name of the first source
         self._positions = False  # which has no headings
+        self._back: deque[tuple[float, str]] = deque(maxlen=MOST)  # stamps of what went back, with its name
         self._newest, self._looked_at = -math.inf, math.nan
         self._found: dict[str, Finding] = {}
 
@@ -66,6 +69,8 @@ class RecentLog:
         else:
             return
         rows = self._rows.setdefault(kind, deque(maxlen=MOST))
+        if rows and row[0] < rows[-1][0]:
+            self._back.append((row[0], _NAMES.get(kind, "")))
         if not all(map(math.isfinite, row[:4])) or (rows and row[0] <= rows[-1][0]):
             return
         rows.append(row)
@@ -76,6 +81,7 @@ class RecentLog:
     def restart(self) -> None:
         """Another recording begins, or the clock was set."""
         self._rows.clear()
+        self._back.clear()
         self._newest, self._looked_at = -math.inf, math.nan
 
     def found(self) -> tuple[Finding, ...]:
@@ -99,7 +105,13 @@ class RecentLog:
             inputs = commands if wheels is None else wheels
             poses = replace(poses, yaw=course_of_path(poses.t, poses.x, poses.y, inputs), course=True)
         run = Run("live", commands, wheels, poses, extra, others=others, source=self._first)
-        return Log(runs=(run,))
+        while self._back and self._back[0][0] < self._newest - KEPT:
+            self._back.popleft()
+        back = Counter(name for _, name in self._back if name)
+        left_out = tuple(
+            LeftOut(f"{name} {GOES_BACK}", count, "live", BACKWARD) for name, count in back.items()
+        )
+        return Log(runs=(run,), left_out=left_out)
 
     def _poses(self, kind: type | str) -> Poses:
         rows = self._rows.get(kind)

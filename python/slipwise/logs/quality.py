@@ -20,6 +20,7 @@ from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Bools, Floats, Inputs, Ints, LeftOut, Log, Poses, Run, has_course
 from slipwise.logs.motion_windows import evidence_of, measured_rows, motion_windows
+from slipwise.logs.stamps import BACKWARD
 
 _HARDLY = 10.0  # times as many poses out of order as in order
 _FEW = 20  # steps; with fewer no such judgement is made
@@ -81,7 +82,7 @@ def _check_forward(log: Log, where: str) -> None:
     rejected = sum(
         entry.count
         for entry in log.left_out
-        if entry.kind in ("duplicate-stamp", "backward-stamp") and entry.reason.startswith("poses")
+        if entry.kind in ("duplicate-stamp", BACKWARD) and entry.reason.startswith("poses")
     )
     if rejected >= _FEW and rejected > _HARDLY * kept:
         what = f"stamps do not go forward in {rejected} of {kept + rejected} poses"

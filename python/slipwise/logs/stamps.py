@@ -8,6 +8,7 @@ import numpy as np
 from slipwise import _core
 from slipwise.logs.log import Bools, Floats
 
+BACKWARD, GOES_BACK = "backward-stamp", "whose stamp goes backward"  # kind and words of what is left out
 LATEST = float(2**32)  # s; what is later, in the year 2106, is no time in seconds
 _UNITS = ((1e-3, "milliseconds"), (1e-6, "microseconds"), (1e-9, "nanoseconds"))
 _SPIKE_FACTOR = 10.0  # a stamp this many usual steps ahead, taken back by the next one, is a fault of its own

@@ -14,7 +14,7 @@ from slipwise.logs.findings.readings import AbsurdSpeeds, NotInSeconds
 from slipwise.logs.fixes import NO_FIX
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Forces, Inputs, Ints, Poses
-from slipwise.logs.stamps import LATEST, forward_stamps, unit_advice
+from slipwise.logs.stamps import BACKWARD, GOES_BACK, LATEST, forward_stamps, unit_advice
 
 INCOMPLETE = "with a number missing or impossible"
 WITHOUT_FIX = "of which the receiver has no fix"
@@ -73,7 +73,7 @@ def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
     if keep.all():
         return stream
     _count(stream, duplicate, tally, "duplicate-stamp", "with a repeated stamp")
-    _count(stream, backward, tally, "backward-stamp", "whose stamp goes backward")
+    _count(stream, backward, tally, BACKWARD, GOES_BACK)
     return stream.select(keep)
 
 

@@ -29,6 +29,7 @@ from slipwise.logs.findings.headings import (
 )
 from slipwise.logs.findings.late_answers import LateAnswers
 from slipwise.logs.findings.missing_turns import MissingTurns
+from slipwise.logs.findings.out_of_order import OutOfOrder
 from slipwise.logs.findings.plausibility import ENOUGH, ENOUGH_TURN, Implausible, UnreachablePoses
 from slipwise.logs.findings.pose_streams import ClockOffset, FrozenPoses
 from slipwise.logs.findings.readings import READINGS
@@ -73,6 +74,7 @@ THEN: tuple[Check, ...] = (
 #: What only a whole log shows.
 WHOLE: tuple[Check, ...] = (
     GyroTurnsOtherwise(),
+    OutOfOrder(),
     CommandTimeout(),
     ArmJoints(),
     WheelSpikes(),
@@ -95,6 +97,7 @@ WHOLE: tuple[Check, ...] = (
 )
 #: What a live node looks for in its last minutes; two sources of wheels or poses it watches as they come.
 OF_STREAM: tuple[Check, ...] = (
+    OutOfOrder(),
     WheelSpikes(),
     ReversalJumps(),
     EchoedCommands(),

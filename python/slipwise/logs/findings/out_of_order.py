@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Finds samples that came out of order: those that go back in time are left out, which is said."""
+
+from __future__ import annotations
+
+from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.findings.seen import WORDS, WholeLog
+from slipwise.logs.log import LeftOut
+from slipwise.logs.stamps import BACKWARD
+
+_MANY = (20, 0.05)  # so many, and of all samples
+
+
+class OutOfOrder(Check):
+    """Poses or inputs of which many go back in time."""
+
+    kind, family, spoils, reserves = "out-of-order", "clocks", False, True
+    of_input = True
+    means = "rows are not in the order of time, or a network overtakes itself: a part is left out"
+    shows = "20 and 5 % of the poses, or of the inputs that are learned from, are earlier than one before"
+    cure = "sort the table by `t`; date messages when they are measured"
+
+    def look_at(self, whole: WholeLog) -> Finding | None:
+        """Compare what the reader left out with what it kept."""
+        inputs = WORDS[whole.input_name].name
+        series = [run.commands if whole.input_name == "command" else run.wheels for run in whole.log.runs]
+        kept = {
+            "poses": sum(len(run.poses.as_measured) for run in whole.log.runs),
+            inputs: sum(len(each) for each in series if each is not None),
+        }
+        parts = {name: _left_out(whole.log.left_out, name) / max(count, 1) for name, count in kept.items()}
+        worst = max(parts, key=lambda name: parts[name])
+        back = _left_out(whole.log.left_out, worst)
+        if back < _MANY[0] or back < _MANY[1] * (back + kept[worst]):
+            return None
+        return self.found(
+            f"{back} of {back + kept[worst]} {worst} are earlier than one that came before them, and are "
+            "left out: they are not in the order of time",
+            "Sort the table by t, or date messages when they are measured.",
+            evidence=back / (back + kept[worst]),
+        )
+
+
+def _left_out(entries: tuple[LeftOut, ...], name: str) -> int:
+    """Return how many samples of a name went back."""
+    return sum(each.count for each in entries if each.kind == BACKWARD and each.reason.startswith(name))
