@@ -24,6 +24,7 @@ from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.knowledge_file import knowledge_text
 from slipwise.fleet.vehicle_numbers import VehicleNumbers, vehicle_numbers
 from slipwise.logs import Log, open_log
+from slipwise.logs.options import vehicle_file
 from slipwise.logs.remote import lent, remote_version
 from slipwise.logs.vehicle_description import load_vehicle
 from slipwise.models.body_force import without_force
@@ -149,7 +150,7 @@ def settings_hash(settings: Settings) -> str:
     """Return the SHA-256 of settings, however they were written, and of the vehicle's file that they name."""
     said = settings.model_dump(mode="json")
     vehicle = said["log"]["vehicle"]
-    if vehicle is not None and "." in vehicle:
+    if vehicle_file(vehicle) is not None:
         said["vehicle_file"] = load_vehicle(vehicle).model_dump(mode="json")
     text = json.dumps(said, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()

@@ -69,8 +69,8 @@ class RecentLog:
         else:
             return
         rows = self._rows.setdefault(kind, deque(maxlen=MOST))
-        if rows and row[0] < rows[-1][0]:
-            self._back.append((row[0], _NAMES.get(kind, "")))
+        if kind in _NAMES and rows and row[0] < rows[-1][0]:
+            self._back.append((row[0], _NAMES[kind]))
         if not all(map(math.isfinite, row[:4])) or (rows and row[0] <= rows[-1][0]):
             return
         rows.append(row)
@@ -107,7 +107,7 @@ class RecentLog:
         run = Run("live", commands, wheels, poses, extra, others=others, source=self._first)
         while self._back and self._back[0][0] < self._newest - KEPT:
             self._back.popleft()
-        back = Counter(name for _, name in self._back if name)
+        back = Counter(name for _, name in self._back)
         left_out = tuple(
             LeftOut(f"{name} {GOES_BACK}", count, "live", BACKWARD) for name, count in back.items()
         )

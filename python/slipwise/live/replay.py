@@ -8,8 +8,6 @@ import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
 from slipwise.calibration.prepared_run import PreparedRun, has_wheels, prepare_run
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
 from slipwise.errors import SettingsError
@@ -105,15 +103,12 @@ def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Stampe
     commands, wheels, attitudes = (rows.tolist() for rows in others)
     poses = (sourced_rows(run.run, measured, sources) if sources else measured).tolist()
     given = run.run.commands
-    ends = np.zeros(len(commands), bool) if given is None or given.ended is None else given.ended
+    ends = [] if given is None else given.ends.tolist()
     tilt = {t: (roll, pitch) for t, roll, pitch in attitudes}
     seen = run.run.poses
     heights = {} if seen.z is None else dict(zip(seen.t.tolist(), seen.z.tolist(), strict=True))
     streams: tuple[list[tuple[float, int, int, Sample]], ...] = (
-        [
-            (t, 0, i, Command(t, v, omega, vy, ended=bool(ends[i])))
-            for i, (t, v, vy, omega) in enumerate(commands)
-        ],
+        [(t, 0, i, Command(t, v, omega, vy, ended=ends[i])) for i, (t, v, vy, omega) in enumerate(commands)],
         [(t, 1, i, Wheels(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(wheels)],
         [(t, 2, i, KnownForce(t, x, y)) for i, (t, x, y) in enumerate(force_rows(run.run).tolist())],
         [

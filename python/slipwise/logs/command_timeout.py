@@ -44,8 +44,7 @@ def _ended(commands: Inputs, seconds: float, last: float) -> tuple[Inputs, int]:
     added = np.array([stamp for stamps in zeros for stamp in stamps])
     t = np.concatenate((commands.t, added))
     order = np.argsort(t, kind="stable")
-    before = np.zeros(len(commands), bool) if commands.ended is None else commands.ended
-    ended = np.concatenate((before, np.ones(len(added), bool)))[order]
+    ended = np.concatenate((commands.ends, np.ones(len(added), bool)))[order]
     none = np.zeros(len(added))
     v, vy, omega = (np.concatenate((c, none))[order] for c in (commands.v, commands.vy, commands.omega))
     return replace(commands, t=t[order], v=v, vy=vy, omega=omega, ended=ended), len(zeros)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from slipwise.logs.log import LeftOut
+from slipwise.logs.log import LeftOut, Log
 
 
 class Tally:
@@ -32,3 +32,8 @@ class Tally:
             LeftOut(reason=reason, count=count, where=where, kind=kind)
             for (kind, reason), (count, where) in self._entries.items()
         )
+
+
+def samples_left_out(log: Log, name: str, *kinds: str) -> int:
+    """Return how many samples of a name, such as "poses", were left out as one of some kinds."""
+    return sum(each.count for each in log.left_out if each.kind in kinds and each.reason.startswith(name))

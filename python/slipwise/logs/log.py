@@ -88,6 +88,16 @@ class Inputs(_Series):
     def __repr__(self) -> str:
         return f"<Inputs: {len(self)} samples over {_duration(self.t):.1f} s>"
 
+    @property
+    def ends(self) -> Bools:
+        """Which samples are zeros of a watchdog, [N]."""
+        return np.zeros(len(self), bool) if self.ended is None else self.ended
+
+    @property
+    def sent(self) -> Inputs:
+        """The same without zeros of a watchdog, which nobody sent."""
+        return self if self.ended is None else self.select(~self.ended)
+
     def twists(self) -> Floats:
         """Return rows of (v, vy, omega), [N, 3]."""
         return np.column_stack((self.v, self.vy, self.omega))

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 AUTO = "auto"
 
 
+def vehicle_file(vehicle: str | None) -> Path | None:
+    """Return the file that describes a vehicle; None where it is a preset, whose name has no dot."""
+    return None if vehicle is None or "." not in vehicle else Path(vehicle)
+
+
 @dataclass(frozen=True)
 class LogOptions(LogFields):
     """How to read a log; whatever is None is guessed, and the guess is noted in the log.
@@ -92,8 +97,9 @@ class LogOptions(LogFields):
     @property
     def files(self) -> tuple[Path, ...]:
         """Files that are read beside a log."""
-        described = () if self.vehicle is None or "." not in self.vehicle else (Path(self.vehicle),)
-        return (*(() if self.poses is None else (self.poses,)), *self.other_poses, *described)
+        described = vehicle_file(self.vehicle)
+        beside = (self.poses, *self.other_poses, described)
+        return tuple(path for path in beside if path is not None)
 
     def _described(self) -> VehicleDescription | None:
         if self.vehicle is None:

@@ -17,7 +17,7 @@ from slipwise.logs.findings.readings import NotInSeconds
 from slipwise.logs.findings.seen import OTHER, WORDS
 from slipwise.logs.findings.wheel_twists import DeadWheel
 from slipwise.logs.held import UNKNOWN_AFTER
-from slipwise.logs.left_out import Tally
+from slipwise.logs.left_out import Tally, samples_left_out
 from slipwise.logs.log import Bools, Floats, Inputs, Ints, LeftOut, Log, Poses, Run, has_course
 from slipwise.logs.motion_windows import evidence_of, measured_rows, motion_windows
 from slipwise.logs.stamps import BACKWARD
@@ -79,11 +79,7 @@ def _cause(log: Log, rows: Floats) -> Finding | None:
 def _check_forward(log: Log, where: str) -> None:
     """Refuse a log in which hardly any pose is later than those before it: its stamps are no times."""
     kept = sum(len(run.poses) for run in log.runs)
-    rejected = sum(
-        entry.count
-        for entry in log.left_out
-        if entry.kind in ("duplicate-stamp", BACKWARD) and entry.reason.startswith("poses")
-    )
+    rejected = samples_left_out(log, "poses", "duplicate-stamp", BACKWARD)
     if rejected >= _FEW and rejected > _HARDLY * kept:
         what = f"stamps do not go forward in {rejected} of {kept + rejected} poses"
         advice = "give each measurement its own time, in seconds"

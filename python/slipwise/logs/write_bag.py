@@ -96,8 +96,8 @@ def _not_written(log: Log) -> tuple[LeftOut, ...]:
     counts: Counter[str] = Counter()
     for run in log.runs:
         counts["fixes of a satellite receiver"] += 0 if run.poses.fix is None else len(run.poses)
-        ended = None if run.commands is None else run.commands.ended
-        counts["zeros that end commands (--command-timeout)"] += 0 if ended is None else int(ended.sum())
+        ended = 0 if run.commands is None else int(run.commands.ends.sum())
+        counts["zeros that end commands (--command-timeout)"] += ended
         for name, other in run.others.items():
             counts[f"poses of the source {name}"] += len(other)
         for name, values in run.extra.items():
@@ -163,7 +163,7 @@ def _stamps(t: Floats, shift: int) -> list[int]:
 
 def _run_entries(run: Run, shift: int, make: _Messages) -> Iterator[Entry]:
     if run.commands is not None:
-        c = run.commands if run.commands.ended is None else run.commands.select(~run.commands.ended)
+        c = run.commands.sent
         rows = zip(_stamps(c.t, shift), c.v.tolist(), c.vy.tolist(), c.omega.tolist(), strict=True)
         for stamp, v, vy, omega in rows:
             yield stamp, COMMAND_TOPIC, make.command(stamp, make.twist(v, vy, omega))

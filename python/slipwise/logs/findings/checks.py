@@ -107,8 +107,6 @@ OF_STREAM: tuple[Check, ...] = (
     FrozenPoses(),
     TowedPoses(),
     FilledPoses(),
-    TowedPoses(),
-    FilledPoses(),
     DriftingPoses(),
     AskewAttitude(),
     ClockOffset(),

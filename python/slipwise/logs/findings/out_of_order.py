@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.seen import WORDS, WholeLog
-from slipwise.logs.log import LeftOut
+from slipwise.logs.left_out import samples_left_out
 from slipwise.logs.stamps import BACKWARD
 
 _MANY = (20, 0.05)  # so many, and of all samples
@@ -28,19 +28,14 @@ class OutOfOrder(Check):
             "poses": sum(len(run.poses.as_measured) for run in whole.log.runs),
             inputs: sum(len(each) for each in series if each is not None),
         }
-        parts = {name: _left_out(whole.log.left_out, name) / max(count, 1) for name, count in kept.items()}
-        worst = max(parts, key=lambda name: parts[name])
-        back = _left_out(whole.log.left_out, worst)
-        if back < _MANY[0] or back < _MANY[1] * (back + kept[worst]):
+        counts = {name: samples_left_out(whole.log, name, BACKWARD) for name in kept}
+        worst = max(kept, key=lambda name: counts[name] / max(kept[name], 1))
+        back, count = counts[worst], counts[worst] + kept[worst]
+        if back < _MANY[0] or back < _MANY[1] * count:
             return None
         return self.found(
-            f"{back} of {back + kept[worst]} {worst} are earlier than one that came before them, and are "
+            f"{back} of {count} {worst} are earlier than one that came before them, and are "
             "left out: they are not in the order of time",
             "Sort the table by t, or date messages when they are measured.",
-            evidence=back / (back + kept[worst]),
+            evidence=back / count,
         )
-
-
-def _left_out(entries: tuple[LeftOut, ...], name: str) -> int:
-    """Return how many samples of a name went back."""
-    return sum(each.count for each in entries if each.kind == BACKWARD and each.reason.startswith(name))

@@ -86,7 +86,7 @@ class IdleSource(TwoSources):
         for run in whole.log.runs:
             if run.commands is None or len(run.commands) < 2:
                 continue
-            sent = run.commands if run.commands.ended is None else run.commands.select(~run.commands.ended)
+            sent = run.commands.sent
             driver = sent.select((sent.twists() != 0.0).any(axis=1))
             at = _interrupted(sent, driver)
             motion = CommandedMotion.between(driver, run.poses)

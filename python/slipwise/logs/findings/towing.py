@@ -66,16 +66,10 @@ class Towing:
         return cls(t, forward, rotation, poses.t[i], poses.t[j], yaw[j] - yaw[i], follows[at])
 
     def between(self, steps: Floats, delay: float = 0.0) -> Floats:
-        """Sum what is in steps, [K] or [K, C], over the good windows, [G] or [G, C], `delay` s before."""
-        total = np.concatenate((np.zeros((1, *steps.shape[1:])), np.cumsum(steps, axis=0)))
-        first, last = (self._at(total, each[self.good] - delay) for each in (self.start, self.stop))
-        return np.asarray(last - first)
-
-    def _at(self, total: Floats, t: Floats) -> Floats:
-        place = np.clip((t - self.t[0]) / _STEP, 0.0, len(total) - 1.0)
-        low = np.minimum(place.astype(np.int64), len(total) - 2)
-        part = (place - low).reshape(-1, *(1,) * (total.ndim - 1))
-        return np.asarray((1.0 - part) * total[low] + part * total[low + 1])
+        """Sum what is in steps, [K, C], over the good windows, [G, C], `delay` s before."""
+        total = np.vstack((np.zeros(steps.shape[1]), np.cumsum(steps, axis=0))).T
+        start, stop = self.start[self.good] - delay, self.stop[self.good] - delay
+        return np.column_stack([np.interp(stop, self.t, c) - np.interp(start, self.t, c) for c in total])
 
 
 def turns(drives: Sequence[Towing]) -> Floats:
@@ -102,7 +96,7 @@ def left_by_trailer(drives: Sequence[Towing], *, commanded: bool) -> tuple[float
     measured, best = turns(drives), (1.0, 0.0)
     for lag in _LAGS_OF_DRIVES if commanded else _LAGS_OF_DRIVES[:1]:
         towed = [_towed(_lagged(each.forward, lag), _lagged(each.rotation, lag)) for each in drives]
-        pulls = np.concatenate([each.between(each.forward) for each in drives])
+        pulls = np.concatenate([each.between(each.forward[:, None]) for each in drives])
         turned = np.concatenate([each.between(steps) for each, steps in zip(drives, towed, strict=True)])
         for number, column in enumerate(turned.T):
             left, scale = _left(np.column_stack((column, pulls)), measured)

@@ -26,7 +26,7 @@ from sample_logs import Drive, steady_run
 
 from slipwise import _core
 from slipwise.logs import Inputs, Log, LogOptions, Poses, open_log
-from slipwise.logs.findings.checks import findings_in, findings_of, looked_at, seen_in
+from slipwise.logs.findings.checks import OF_STREAM, WHOLE, findings_in, findings_of, looked_at, seen_in
 from slipwise.logs.findings.command_stops import CommandTimeout
 from slipwise.logs.findings.seen import WholeLog
 from slipwise.logs.held import UNKNOWN_AFTER
@@ -64,6 +64,11 @@ CONTRADICTORY: dict[str, tuple[Log, str, str, str]] = {  # log, input, kind, wha
     ),
     "circular": (circular(SOUND), "command", "repeated-wheels", "lidar"),
 }
+
+
+def test_no_check_looks_twice() -> None:
+    for checks in (WHOLE, OF_STREAM):
+        assert len({type(check) for check in checks}) == len(checks)
 
 
 def test_each_contradiction_is_named_with_what_cures_it(subtests: pytest.Subtests) -> None:
