@@ -33,6 +33,7 @@ ModelFile read(const YAML::Node& root) {
                   .response = value_or(root["response"], false),
                   .sensor_extrinsics = value_or(root["sensor_extrinsics"], false),
                   .delays = value_or(root["delays"], false),
+                  .lags = value_or(root["lags"], false),
                   .wheelbase = value_or(root["wheelbase"], 0.0)};
   file.limit_gains = value_or(root["limit_gains"], std::vector<double>{});
   for (const YAML::Node& row : root["parameters"]) {

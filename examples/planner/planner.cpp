@@ -18,6 +18,7 @@ slipwise::MotionModel learned_model() {
   const slipwise::ActuatorParameters actuator{.dynamics = SLIPWISE_HAS_DYNAMICS,
                                               .response = SLIPWISE_HAS_RESPONSE,
                                               .delays = SLIPWISE_HAS_DELAYS,
+                                              .lags = SLIPWISE_HAS_LAGS,
                                               .wheelbase = SLIPWISE_WHEELBASE};
   return {{"learned", lon, lat, ang}, actuator};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of cpp/include/slipwise/lie, slip and motion.
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/tuple.h>
@@ -12,6 +13,7 @@
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/motion/disturbance_model.hpp"
 #include "slipwise/motion/motion_model.hpp"
+#include "slipwise/online/stamp_spacing.hpp"
 #include "slipwise/slip/basis.hpp"
 #include "slipwise/slip/force_terms.hpp"
 #include "slipwise/slip/mixed_ahead.hpp"
@@ -115,6 +117,8 @@ void bind_motion(nb::module_& m) {
       .def_ro("name", &ParameterInfo::name)
       .def_ro("unit", &ParameterInfo::unit)
       .def_ro("description", &ParameterInfo::description);
+  m.def("lag_shows", &lag_shows, "log_mean"_a, "log_std"_a,
+        "Whether a lag of the body [ln s] is surely long enough to be told from a clock that is as late.");
   nb::class_<MotionModel>(m, "MotionModel", "A slip basis behind an actuator model.")
       .def(
           "__init__",
@@ -131,6 +135,12 @@ void bind_motion(nb::module_& m) {
       .def_static(
           "with_delays", [](const Basis& basis) { return MotionModel(basis, {.delays = true}); }, "basis"_a,
           "A delay per channel, and no actuator model behind it.")
+      .def_static(
+          "with_lags",
+          [](const Basis& basis, bool clock_offset) {
+            return MotionModel(basis, {.clock_offset = clock_offset, .lags = true});
+          },
+          "basis"_a, "clock_offset"_a, "A lag per channel: of a body behind its wheels.")
       .def(
           "with_extrinsics",
           [](const MotionModel& model, bool sensor_extrinsics) {
@@ -161,10 +171,22 @@ void bind_motion(nb::module_& m) {
           "mean"_a, "covariance"_a,
           "Mean and covariance [parameters] without the place and clock of the pose sensor; delays to wheel speeds "
           "that are stamped late become those to the motion.")
+      .def(
+          "lateness",
+          [](const MotionModel& model, const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance, double spacing) {
+            model.check(mean);
+            check_square(covariance, model.size(), "the covariance of a model");
+            const auto late = learned_lateness(model, {mean, covariance}, spacing);
+            return late ? std::optional(std::tuple(late->mean, late->std)) : std::nullopt;
+          },
+          "mean"_a, "covariance"_a, "spacing"_a,
+          "How much later poses come than wheel speeds of a stamp spacing [s], and its standard deviation [s]; lags of "
+          "the body that are too short to show count as lateness. None where no clock offset is learned.")
       .def_prop_ro("wheelbase", [](const MotionModel& model) { return model.learned().wheelbase; })
       .def_prop_ro("basis", &MotionModel::basis)
       .def_prop_ro("dynamics", [](const MotionModel& model) { return model.learned().dynamics; })
       .def_prop_ro("delays", [](const MotionModel& model) { return model.learned().delays; })
+      .def_prop_ro("lags", [](const MotionModel& model) { return model.learned().lags; })
       .def_prop_ro("clock_offset", [](const MotionModel& model) { return model.learned().clock_offset; })
       .def_prop_ro("response", [](const MotionModel& model) { return model.learned().response; })
       .def_prop_ro("sensor_extrinsics", [](const MotionModel& model) { return model.learned().sensor_extrinsics; })

@@ -55,19 +55,22 @@ struct ChannelDelay {
   Eigen::Index parameter;
 };
 
-/// The samples of one channel as the drive sees them: delayed.
+/// The samples of one channel as the drive sees them: delayed. Before the first command nothing was asked for; what
+/// wheels did first they did before.
 class DelayedCursor {
  public:
-  DelayedCursor(const InputHistory& inputs, double wheelbase, const ChannelDelay& delay, double start,
+  DelayedCursor(const InputHistory& inputs, const ActuatorModel& actuator, const ChannelDelay& delay, double start,
                 double known_until)
       : inputs_(inputs),
-        wheelbase_(wheelbase),
+        wheelbase_(actuator.wheelbase),
+        before_(actuator.follows_wheels && inputs.size() > 0 ? channel_input(inputs.sample(0), wheelbase_)
+                                                             : BodyTwist{}),
         delay_(delay.seconds),
         index_(delay.parameter),
         next_(inputs.count_until(start - delay.seconds)),
         end_(std::max(next_, inputs.count_until(known_until))) {}
 
-  BodyTwist held() const { return next_ == 0 ? BodyTwist{} : channel_input(inputs_.sample(next_ - 1), wheelbase_); }
+  BodyTwist held() const { return next_ == 0 ? before_ : channel_input(inputs_.sample(next_ - 1), wheelbase_); }
   bool before_first() const { return next_ == 0; }
   double next_change() const { return next_ < end_ ? inputs_.time(next_) + delay_ : kNever; }
   Knot change_knot() const { return {next_change(), index_}; }
@@ -84,6 +87,7 @@ class DelayedCursor {
  private:
   const InputHistory& inputs_;
   double wheelbase_;
+  BodyTwist before_;
   double delay_;
   Eigen::Index index_;
   std::size_t next_;
@@ -104,9 +108,9 @@ class ActuatorWalk {
         model_start_(window.initial && window.known ? Knot{window.known->until, kFixed} : start_),
         warm_up_(warm_up()),
         rounding_(warm_up_ > 0.0 ? 0.0 : kSameStamp),
-        cursor_v_(inputs, actuator.wheelbase, {actuator.delay_v, kSpeedPlaces.delay},
+        cursor_v_(inputs, actuator, {actuator.delay_v, kSpeedPlaces.delay},
                   model_start_.t - warm_up_ + rounding_, last_input()),
-        cursor_omega_(inputs, actuator.wheelbase, {actuator.delay_omega, kTurnPlaces.delay},
+        cursor_omega_(inputs, actuator, {actuator.delay_omega, kTurnPlaces.delay},
                       model_start_.t - warm_up_ + rounding_, last_input()),
         v_(speed_, kSpeedPlaces),
         vy_(speed_, kSpeedPlaces),

@@ -55,6 +55,11 @@ Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds,
     std.segment<4>(at).setConstant(settings.log_std);
     at += 4;
   }
+  if (model.learned().lags) {
+    prior.mean.segment<2>(at).setConstant(std::log(settings.body_lag));
+    std.segment<2>(at).setConstant(settings.body_lag_log_std);
+    at += 2;
+  }
   if (model.learned().delays) {  // with the offset of the clocks, which alone may be negative
     std.segment<2>(at).setConstant(settings.clock_offset_std);
     at += 2;

@@ -66,6 +66,7 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
                           {.dynamics = settings.dynamics,
                            .clock_offset = settings.clock_offset && !settings.dynamics,
                            .sensor_extrinsics = settings.sensor_extrinsics,
+                           .lags = !settings.dynamics,
                            .wheelbase = settings.dynamics ? settings.wheelbase : 0.0},
                           settings.filter, settings.average)),
       baseline_(settings.filter.noise),

@@ -271,10 +271,12 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
   SurfaceCandidate taken = candidates[decision.known];
   double probability = decision.probability;
   const bool named = taken.kind == Kind::Known && surfaces_[taken.place].name == label_;
-  if (decision.sure ? another : at_start && (!named || another)) {  // or kept apart until it is known better
+  const bool suspected = !decision.sure && !at_start && trial.probabilities()[0] >= settings_.doubt;
+  const bool apart = !decision.sure && at_start && !named;  // is kept apart until it is known better
+  if (!suspected && (another || apart)) {
     taken = {.kind = Kind::New};
     probability = decision.another;
-  } else if (!decision.sure && !at_start) {  // a suspicion that was not confirmed
+  } else if (suspected) {  // without being confirmed
     taken = candidates.front();
     probability = trial.probabilities()[0];
   }

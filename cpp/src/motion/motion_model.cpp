@@ -80,8 +80,9 @@ double log_time_derivative(double seconds) { return (seconds + kShortResponse) /
 MotionModel::MotionModel() : MotionModel({"none", {}, {}, {}}, {}) {}
 
 MotionModel::MotionModel(Basis basis, ActuatorParameters learned) : basis_(std::move(basis)), learned_(learned) {
-  if (learned_.delays && (learned_.dynamics || learned_.response)) {
-    throw std::invalid_argument("a motion model has delays alone, or lags and delays, not both");
+  const bool both = learned_.dynamics || learned_.response;
+  if ((learned_.delays && learned_.lags) || (both && (learned_.delays || learned_.lags))) {
+    throw std::invalid_argument("a motion model has lags and delays, or one of them alone, not both");
   }
   if (!(learned_.wheelbase >= 0.0) || !std::isfinite(learned_.wheelbase)) {
     throw std::invalid_argument("the wheelbase of a motion model must be positive [m], or 0 where nothing steers");
@@ -92,6 +93,7 @@ MotionModel::MotionModel(Basis basis, ActuatorParameters learned) : basis_(std::
     }
   };
   add(learned_.dynamics, {0, 1, 2, 3});
+  add(learned_.lags, {0, 1});
   add(learned_.delays, {kDelayV, kDelayV + 1});
   add(learned_.response, {5, 6, 7, 8, 9, 10});
   add(learned_.clock_offset, {4});
@@ -118,6 +120,7 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
 ActuatorModel MotionModel::actuator(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
   ActuatorModel actuator;
   actuator.wheelbase = learned_.wheelbase;
+  actuator.follows_wheels = learned_.lags;
   Eigen::Index at = slip_size();
   for (const Eigen::Index row : actuator_rows_) {
     const ActuatorParameter& parameter = actuator_parameter(row);

@@ -70,6 +70,22 @@ TEST_CASE("delays alone are seconds, none and negative ones too, and nothing lag
 TEST_CASE("delays alone and lags exclude each other") {
   CHECK_THROWS_WITH_AS(MotionModel(named_basis("edd-2"), {.dynamics = true, .delays = true}),
                        doctest::Contains("not both"), std::invalid_argument);
+  CHECK_THROWS_AS(MotionModel(named_basis("edd-2"), {.delays = true, .lags = true}), std::invalid_argument);
+  CHECK_THROWS_AS(MotionModel(named_basis("edd-2"), {.dynamics = true, .lags = true}), std::invalid_argument);
+}
+
+TEST_CASE("a body that lags behind its wheels goes on as it did where a log begins in motion") {
+  const MotionModel model(named_basis("edd-2"), {.lags = true});
+  const ActuatorModel actuator = model.actuator(Eigen::Vector4d::Constant(std::log(0.4)));
+  const InputHistory wheels(std::vector{0.0}, std::vector{BodyTwist{.v = 1.0, .omega = 0.5}});
+  const ActuatorSteps driven = actuator_steps(wheels, actuator, {.start = 0.0, .end = 2.0});
+  double forward = 0.0, turn = 0.0;
+  for (const ActuatorStep& step : driven.steps) {
+    forward += step.forward;
+    turn += step.turn;
+  }
+  CHECK(forward == doctest::Approx(2.0));
+  CHECK(turn == doctest::Approx(1.0));
 }
 
 TEST_CASE("a sensor whose place is not learned sits at base_link") {

@@ -20,6 +20,12 @@ using tests::streamed_robot;
 
 constexpr double kSeconds = 45.0;
 
+/// Of what is learned, the variance of the slip.
+double slip_variance(const MotionPosterior& learned) {
+  const Eigen::Index size = learned.model.slip_size();
+  return learned.estimate.covariance.topLeftCorner(size, size).trace();
+}
+
 LearnedModel learned(const Recording& run, bool from_commands) {
   MotionLearner learner(learner_settings(from_commands));
   learner.start_run();
@@ -166,8 +172,7 @@ TEST_CASE("poses that are said to be poor spoil less, and poses said to be alike
   std::ranges::for_each(alike.poses, [](MeasuredPose& pose) { pose.std = {.xy = 3.0, .yaw = 1e6}; });
   check_same(learned(silent, false), learned(alike, false));
   const auto uncertainty = [](const Recording& recording) {
-    const Estimate estimate = learned(recording, false).known.slip->estimate;
-    return estimate.covariance.trace();
+    return slip_variance(*learned(recording, false).known.slip);
   };
   CHECK(uncertainty(run) < uncertainty(silent));
   Recording impossible = silent;
@@ -180,7 +185,7 @@ TEST_CASE("forgetting makes slip less sure at once, and a fraction beyond 0 to 1
   MotionLearner learner(learner_settings(false));
   learner.start_run();
   push(learner, streamed_robot(8, kSeconds));
-  const auto spread = [&] { return learner.model().known.slip->estimate.covariance.trace(); };
+  const auto spread = [&] { return slip_variance(*learner.model().known.slip); };
   const double before = spread();
   learner.forget(0.5);
   CHECK(spread() > 2.0 * before);

@@ -7,8 +7,11 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from slipwise import _core
 from slipwise.calibration.learner import Posterior
+from slipwise.models.body_lag import is_body_lag
 from slipwise.models.parameter_table import physical_name
 from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 
@@ -28,20 +31,33 @@ class Confounded:
 
 
 def not_identifiable(posterior: Posterior) -> tuple[str, ...]:
-    """Return the parameters that the drive determines little better than the prior."""
+    """Return the parameters that the drive determines little better than the prior.
+
+    Of a body that hardly lags behind its wheels no drive tells how little, and nobody needs it.
+    """
     ratios = posterior.variance_ratio.tolist()
     return tuple(
         info.name
         for info, ratio in zip(posterior.motion.parameters, ratios, strict=True)
-        if ratio > UNIDENTIFIABLE_RATIO
+        if ratio > UNIDENTIFIABLE_RATIO and not (posterior.motion.lags and is_body_lag(info.name))
     )
 
 
 def confounded(posterior: Posterior) -> tuple[Confounded, ...]:
     """Return the pairs that the drive can hardly tell apart, the closest first."""
     names = [info.name for info in posterior.motion.parameters]
+    stds = np.sqrt(np.diag(posterior.covariance))
+    hidden = {
+        i
+        for i, name in enumerate(names)
+        if posterior.motion.lags and is_body_lag(name) and not _core.lag_shows(posterior.mean[i], stds[i])
+    }
     pairs = _core.correlated_pairs(posterior.covariance, LOOK_ALIKE)
-    return tuple(Confounded(names[p.first], names[p.second], float(p.correlation)) for p in pairs)
+    return tuple(
+        Confounded(names[p.first], names[p.second], float(p.correlation))
+        for p in pairs
+        if not hidden & {p.first, p.second}
+    )
 
 
 def longest_delay(names: Sequence[str], values: Sequence[float]) -> float:
@@ -101,11 +117,12 @@ def timing_words(
             sentences.append(f"Wheel speeds in the log would{how}.")
     if motion.clock_offset:
         held = "" if motion.dynamics else ", less half of their period, as they are held until the next"
+        lag = ", beside the lag of the body" if motion.lags else ""
         from_sampling = "One within half" if motion.dynamics else "A negative one below"
         sentences.append(
-            f"clock_offset is how much later poses come than wheel speeds{held}: they are stamped late, or "
-            f"the robot follows its wheels late. {from_sampling} the period of the wheel speeds comes from "
-            "their sampling."
+            f"clock_offset is how much later poses come than wheel speeds{held}{lag}: they are stamped late, "
+            f"or the robot follows its wheels late. {from_sampling} the period of the wheel speeds comes "
+            "from their sampling."
         )
         if "clock_offset" in unknown:
             sentences.append("This drive does not determine it.")

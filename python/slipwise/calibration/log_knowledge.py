@@ -108,9 +108,10 @@ def robot_model(
         model = _core.MotionModel.with_response(basis, hypotheses.clock_offset)
     elif structure == DIRECT:
         model = _core.MotionModel.with_delays(basis)
+    elif hypotheses.dynamics:
+        model = _core.MotionModel(basis, True, False)
     else:
-        dynamics = hypotheses.dynamics
-        model = _core.MotionModel(basis, dynamics, hypotheses.clock_offset and not dynamics)
+        model = _core.MotionModel.with_lags(basis, hypotheses.clock_offset)
     wheelbase = hypotheses.wheelbase if hypotheses.dynamics else 0.0
     return model.with_extrinsics(hypotheses.sensor_extrinsics).with_wheelbase(wheelbase)
 

@@ -17,7 +17,8 @@ from slipwise.models.model import Model
 from slipwise.models.schema import LabelSection, SurfaceSection, VerdictSection
 
 _VEHICLE = ("vehicle", "sensor_extrinsics")  # sections of the settings that are the robot's
-_FORM = ("dynamics", "delays", "clock_offset", "response", "sensor_extrinsics", "wheelbase")  # of the model
+# Of the model.
+_FORM = ("dynamics", "delays", "lags", "clock_offset", "response", "sensor_extrinsics", "wheelbase")
 
 
 @dataclass(frozen=True)

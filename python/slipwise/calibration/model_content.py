@@ -47,6 +47,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         slip=schema.Slip(basis=basis.name, lon=basis.lon, lat=basis.lat, ang=basis.ang),
         dynamics=motion.dynamics,
         delays=motion.delays,
+        lags=motion.lags,
         clock_offset=motion.clock_offset,
         response=motion.response,
         sensor_extrinsics=motion.sensor_extrinsics,

@@ -149,6 +149,7 @@ def _library(model: Model) -> str:
         ("HAS_DYNAMICS", motion.dynamics),
         ("HAS_RESPONSE", motion.response),
         ("HAS_DELAYS", motion.delays),
+        ("HAS_LAGS", motion.lags),
     ]
     lines = [f"#define SLIPWISE_{name} {text}".rstrip() for name, text in lists]
     return "\n".join([*lines, *(f"#define SLIPWISE_{name} {int(count)}" for name, count in counts)])

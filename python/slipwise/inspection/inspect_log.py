@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise import _core
 from slipwise.calibration import Settings
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.prepared_run import choose_input
@@ -22,6 +23,7 @@ from slipwise.inspection.learnability import Learnability, LearnableParameter, l
 from slipwise.logs import Log, LogOptions, Survey, open_log, survey_log
 from slipwise.logs.findings.diagnose import each_once
 from slipwise.logs.findings.finding import Finding, RefusedLogError
+from slipwise.models.body_lag import is_body_lag
 from slipwise.segments import WindowRules
 
 Floats = NDArray[np.float64]
@@ -170,8 +172,12 @@ class Timing:
     meaning: str
 
 
-_MEANINGS = {
-    "clock_offset": "poses come this much later than wheel speeds, by their stamps or a body that lags",
+_OF_WHEELS = {
+    "clock_offset": "poses come this much later than wheel speeds, by their stamps or a body that moves later",
+    "log_time_constant_v": "the body's speed follows that of its wheels with this time constant",
+    "log_time_constant_omega": "the body's yaw rate follows that of its wheels with this time constant",
+}
+_OF_COMMANDS = {
     "delay_v": "from a speed command to the speed, with no lag",
     "delay_omega": "from a yaw rate command to the yaw rate, with no lag",
     "log_delay_v": "from a speed command to the first effect",
@@ -187,16 +193,17 @@ def timing_of(learned: Learnability) -> tuple[Timing, ...]:
     """Return the times that were learned, in s; none where nothing could be learned.
 
     Where commands were learned by way of the wheel speeds, the clock offset is that of the wheel speeds, and
-    said there.
+    said there. Lags of a body that hardly lags are left out.
     """
-    apart = learned.input == "command" and learned.parameter("clock_offset") is not None
-    found = [(learned.parameter(name), meaning) for name, meaning in _MEANINGS.items()]
-    known = [
-        (p, meaning) for p, meaning in found if p is not None and not (apart and p.name == "clock_offset")
-    ]
+    wheels = learned.input == "wheel"
+    apart = wheels or learned.parameter("clock_offset") is not None
+    meanings = _OF_WHEELS if wheels else _OF_COMMANDS
+    found = [(p, meanings[p.name]) for p in map(learned.parameter, meanings) if p is not None]
     included = "" if apart else ", clock offset included"
     return tuple(
-        _timing(learned.input, p, meaning + (included if "delay" in p.name else "")) for p, meaning in known
+        _timing(learned.input, p, meaning + (included if "delay" in p.name else ""))
+        for p, meaning in found
+        if not (wheels and is_body_lag(p.name)) or _core.lag_shows(p.value, p.std)
     )
 
 

@@ -144,7 +144,7 @@ def without_slip(model: Model, why: str) -> Model:
         model: that was withdrawn.
         why: a sentence.
     """
-    nothing = {"dynamics": False, "delays": False, "clock_offset": False, "response": False}
+    nothing = {"dynamics": False, "delays": False, "lags": False, "clock_offset": False, "response": False}
     verdict = VerdictSection(good=False, sentence=f"No slip: what was learned was withdrawn. {why}")
     changed: dict[str, object] = {
         **nothing,

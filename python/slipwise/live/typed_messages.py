@@ -63,6 +63,7 @@ def motion_model(types: Types, said: ModelText, model: Model, header: Any, text:
         ang=content.slip.ang,
         dynamics=content.dynamics,
         delays=content.delays,
+        lags=content.lags,
         response=content.response,
         clock_offset=content.clock_offset,
         sensor_extrinsics=content.sensor_extrinsics,

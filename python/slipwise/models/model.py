@@ -167,6 +167,8 @@ class Model:
             motion = _core.MotionModel.with_response(basis, content.clock_offset)
         elif content.delays:
             motion = _core.MotionModel.with_delays(basis)
+        elif content.lags:
+            motion = _core.MotionModel.with_lags(basis, content.clock_offset)
         else:
             motion = _core.MotionModel(basis, content.dynamics, content.clock_offset)
         return motion.with_extrinsics(content.sensor_extrinsics).with_wheelbase(content.wheelbase or 0.0)

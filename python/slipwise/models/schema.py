@@ -302,6 +302,7 @@ class ModelFile(Section):
     slip: Slip
     dynamics: bool  # time constants and delays are parameters
     delays: bool = False  # delays without lags, in seconds, are parameters: there is no actuator model
+    lags: bool = False  # lags without delays are parameters: of a body behind its wheels
     clock_offset: bool  # the offset between inputs and poses is a parameter
     response: bool = False  # gain and slow mode of the drive are parameters, learned from wheel speeds
     sensor_extrinsics: bool = False  # the pose of the pose sensor in base_link is three parameters
@@ -353,9 +354,11 @@ class ModelFile(Section):
         return self
 
     @model_validator(mode="after")
-    def _delays_are_alone(self) -> ModelFile:
+    def _parts_are_alone(self) -> ModelFile:
         if self.delays and (self.dynamics or self.response or self.clock_offset or self.input != "command"):
             raise ValueError("delays alone are of commands, without lags, gains or a clock offset")
+        if self.lags and (self.dynamics or self.response or self.input != "wheel"):
+            raise ValueError("lags alone are of wheel speeds, without delays and gains")
         return self
 
     @model_validator(mode="after")

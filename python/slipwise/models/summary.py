@@ -10,6 +10,7 @@ from html import escape
 from typing import Protocol
 
 from slipwise.argument_types import check_arguments
+from slipwise.models.body_lag import body_lag_sentences
 from slipwise.models.channel_words import response_sentences
 from slipwise.models.limits import KINDS
 from slipwise.models.model import Model
@@ -67,6 +68,7 @@ def summarise(model: Model) -> Summary:
         *slip_sentences(model, parameters),
         *share_sentences(model),
         *response_sentences(model.body, physical_parameters(model.body)),
+        *body_lag_sentences(model),
         *_limit_sentences(parameters),
         *_offset_sentences(parameters, model),
         *sensor_sentences(model),
@@ -88,11 +90,10 @@ def _limit_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:
 def _offset_sentences(parameters: tuple[PhysicalParameter, ...], model: Model) -> list[str]:
     found = {p.name: p for p in parameters if p.identified and abs(p.value) > SIGNIFICANT * p.std}
     sentences = []
-    clock = found.get("clock_offset")
     step = model.content.range.wheel_step
-    late = clock.value + (step / 2.0 if model.content.input == "wheel" else 0.0) if clock is not None else 0.0
-    if clock is not None and abs(late) > step / 2.0 + SIGNIFICANT * clock.std:
-        seconds = estimate_text(abs(late), math.hypot(clock.std, step / math.sqrt(12.0)))
+    late, std = model.motion.lateness(model.mean, model.covariance, step) or (0.0, 0.0)
+    if abs(late) > step / 2.0 + SIGNIFICANT * std:
+        seconds = estimate_text(abs(late), std)
         sentences.append(_later(seconds) if late > 0.0 else _late_wheels(seconds, model.content.input))
     parts = [
         f"{estimate_text(abs(place.value), place.std)} m {plus if place.value > 0.0 else minus}"

@@ -36,9 +36,9 @@ def test_each_basis_has_its_own_slip(known: LogKnowledge) -> None:
 
 def test_what_is_the_robots_has_names_and_its_prior(known: LogKnowledge) -> None:
     joint = known.structures["joint"]
-    assert joint.robot_names == ("clock_offset",)
+    assert joint.robot_names == ("log_time_constant_v", "log_time_constant_omega", "clock_offset")
     assert joint.robot is not None
-    assert joint.robot.prior_std.tolist() == [0.2]
+    assert joint.robot.prior_std.tolist() == [1.0, 1.0, 0.2]
 
 
 def test_the_cascade_hands_out_its_actuator_where_it_was_kept() -> None:

@@ -26,6 +26,7 @@ from slipwise.live.replay import samples_of
 from slipwise.live.samples import Command, KnownForce, Pose, Reading, Sample, Wheels
 from slipwise.logs import Log
 from slipwise.models import Model, load_model
+from slipwise.segments import source_names
 
 
 def same(model: Model, other: Model, within: float) -> None:
@@ -85,7 +86,7 @@ def learner_of(learned: Learned) -> sw.MotionLearner:
     """Push all measurements of the log by hand, with the learner saved and loaded between."""
     log = sw.open_log(learned.log, options=learned.options)
     (run,) = prepare_run(log, learned.situation.learns)
-    samples = list(samples_of(run))
+    samples = list(samples_of(run, source_names((run.run,))))
     learner = learner_for(learned, log)
     if learned.situation.before is not None:
         learner.begin_with(load_model(learned.begins[1]), wheels=True)

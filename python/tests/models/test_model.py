@@ -20,6 +20,7 @@ from sample_models import LIMITS, Made, make_model
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import ModelError
+from slipwise.live.applied import without_slip
 from slipwise.models import Model, ModelFile, load_model, parse_model
 from slipwise.models.difference import differences
 from slipwise.prediction import predict
@@ -79,7 +80,7 @@ def test_read_model_predicts_to_the_last_bit_as_the_learned_one(model: Model, tm
 def test_model_without_parameters_makes_the_round_trip(tmp_path: Path) -> None:
     log = simulated_log(Drive(seconds=40.0))
     plain = make_settings({"basis": "none", "learn_clock_offset": False})
-    model = calibrate(log, input="wheel", settings=plain).model
+    model = without_slip(calibrate(log, input="wheel", settings=plain).model, "It wears.")
     again = load_model(model.save(tmp_path / "m.yaml"))
     assert again.content == model.content
     assert again.covariance.shape == (0, 0)

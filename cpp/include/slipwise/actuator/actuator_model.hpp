@@ -30,8 +30,9 @@ struct ActuatorModel {
   double slow_time_constant_v = 0.0;      ///< slow time constant of the speed [s]; without one there is no slow mode
   double slow_time_constant_omega = 0.0;  ///< slow time constant of the yaw rate [s]
   double wheelbase = 0.0;                 ///< of a drive that steers [m], which is no parameter; 0 where it does not
+  bool follows_wheels = false;            ///< no parameter: inputs did the same before the first that was measured
 };
-inline constexpr Eigen::Index kActuatorParameters = 11;  ///< the fields above in their order, but for the wheelbase
+inline constexpr Eigen::Index kActuatorParameters = 11;  ///< the fields above in their order, but for the last two
 
 /// What was measured of the drive: its twist until a moment in input stamps, such as wheel speeds until now.
 struct MeasuredActuator {

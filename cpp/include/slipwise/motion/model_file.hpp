@@ -56,6 +56,7 @@ struct ModelFile {
                     .response = message.response,
                     .sensor_extrinsics = message.sensor_extrinsics,
                     .delays = message.delays,
+                    .lags = message.lags,
                     .wheelbase = message.wheelbase};
     file.limit_gains.assign(message.limit_gains.begin(), message.limit_gains.end());
     for (const auto& row : message.parameters) {

@@ -22,6 +22,7 @@ struct ActuatorParameters {
   bool response = false;           ///< gain, and a slow mode with its fraction and time constant, per channel
   bool sensor_extrinsics = false;  ///< where the pose sensor sits on the robot
   bool delays = false;             ///< delay per channel alone: no actuator model follows it
+  bool lags = false;               ///< lag per channel alone: of a body behind its wheels
   /// Of a robot that steers, whose lags and delays act on the curvature of its path [m], which is no parameter; 0: on
   /// the yaw rate.
   double wheelbase = 0.0;
@@ -37,12 +38,13 @@ double log_time_derivative(double seconds);
 /// delay_omega [ln s], then gain_v, gain_omega, slow_fraction_v, slow_fraction_omega [-], log slow_time_constant_v, log
 /// slow_time_constant_omega [ln s], then clock offset [s], then sensor_x, sensor_y [m], sensor_yaw [rad]. Logarithms
 /// keep lags and delays positive. Delays alone are delay_v, delay_omega [s] in place of the four logarithms: a robot
-/// that obeys at once has none, which no logarithm reaches, and stamps may make them negative.
+/// that obeys at once has none, which no logarithm reaches, and stamps may make them negative. Lags alone are the first
+/// two logarithms.
 class MotionModel {
  public:
   MotionModel();  ///< the kinematic baseline: no slip, nothing learned
-  /// \throws std::invalid_argument when delays alone are wanted together with lags, gains or a slow mode, or the
-  /// wheelbase is negative or not finite.
+  /// \throws std::invalid_argument when delays alone are wanted together with lags, gains or a slow mode, lags alone
+  /// with delays, or the wheelbase is negative or not finite.
   MotionModel(Basis basis, ActuatorParameters learned);
 
   /// What the constructor takes.

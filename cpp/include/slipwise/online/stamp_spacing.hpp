@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 #include "slipwise/filter/motion_posterior.hpp"
 
@@ -21,9 +22,17 @@ struct PoseLateness {
 std::shared_ptr<const MotionPosterior> supported(std::shared_ptr<const MotionPosterior> posterior, double seconds,
                                                  std::size_t segments);
 
+/// Whether a lag of the body behind its wheels is surely long enough to be told from a clock that is as late: its
+/// logarithm [ln s] and the standard deviation of that.
+bool lag_shows(double log_mean, double log_std);
+
 /// By the learned clock offset. Wheel speeds `seconds` apart that drive a model are held, half of that late; where
 /// between two of them the wheels changed is not known. Nothing where the offset is not identified, or where the poses
 /// come first: nothing is stamped before it happens.
 PoseLateness pose_lateness(const MotionPosterior& posterior, double seconds);
+
+/// The same before that is asked whether it is identified, or positive; nothing where no offset is learned. Lags of the
+/// body that are too short to show count as lateness.
+std::optional<PoseLateness> learned_lateness(const MotionModel& model, const Estimate& estimate, double seconds);
 
 }  // namespace slipwise

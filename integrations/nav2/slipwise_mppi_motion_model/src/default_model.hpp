@@ -19,6 +19,7 @@ inline slipwise::RolloutModel default_model() {
   const slipwise::MotionModel model({"learned", lon, lat, ang}, {.dynamics = SLIPWISE_HAS_DYNAMICS,
                                                                  .response = SLIPWISE_HAS_RESPONSE,
                                                                  .delays = SLIPWISE_HAS_DELAYS,
+                                                                 .lags = SLIPWISE_HAS_LAGS,
                                                                  .wheelbase = SLIPWISE_WHEELBASE});
   const std::vector<double> values{SLIPWISE_PARAMETERS};
   const slipwise::CommandLimits limits{.speed = {SLIPWISE_LIMITS_SPEED},

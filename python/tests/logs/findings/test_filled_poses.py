@@ -63,14 +63,14 @@ def test_filled_poses_are_found_with_how_many_there_are(count: int, digits: int)
 
 
 def test_no_model_of_filled_poses_is_good() -> None:
-    """It misses turns by 13 %, six standard deviations; of the poses as they were measured it does not."""
+    """It lags by 0.3 s, as the robot does not; of the poses as they were measured it does not."""
     log = simulated_log(replace(DRIVE, seconds=240.0))
     later = with_poses(filled(log, 20), lambda p: p.select(np.arange(7, len(p))))  # corners between windows
     result = calibrate(later, input="wheel")
     assert not result.verdict.good
     assert "poses were interpolated: their path has a corner every 1 s" in str(result.verdict)
-    turns = slip_gains(result.model).yaw_rate
-    assert abs(turns.value - 0.6) > 4.0 * turns.std
+    rows = {row.name: row for row in result.model.table.rows}
+    assert np.exp(rows["log_time_constant_omega"].value) > 0.2
     measured = calibrate(thinned(log), input="wheel")
     turns = slip_gains(measured.model).yaw_rate
     assert measured.verdict.good
