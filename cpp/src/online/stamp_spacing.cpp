@@ -58,9 +58,7 @@ std::optional<PoseLateness> learned_lateness(const MotionModel& model, const Est
   double mean = estimate.mean[*clock] + held;
   Eigen::VectorXd by = Eigen::VectorXd::Unit(model.size(), *clock);
   const Eigen::Index lags = model.slip_size();  // of speed and yaw rate, where there are any
-  const auto shows = [&](Eigen::Index i) {
-    return lag_shows(estimate.mean[i], std::sqrt(estimate.covariance(i, i)));
-  };
+  const auto shows = [&](Eigen::Index i) { return lag_shows(estimate.mean[i], std::sqrt(estimate.covariance(i, i))); };
   if (model.learned().lags && !shows(lags) && !shows(lags + 1)) {
     by.segment<2>(lags) = 0.5 * estimate.mean.segment<2>(lags).array().exp();
     mean += by.segment<2>(lags).sum();

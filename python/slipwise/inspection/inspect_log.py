@@ -173,7 +173,7 @@ class Timing:
 
 
 _OF_WHEELS = {
-    "clock_offset": "poses come this much later than wheel speeds, by their stamps or a body that moves later",
+    "clock_offset": "poses come this much later than wheel speeds, by their stamps or as the body does",
     "log_time_constant_v": "the body's speed follows that of its wheels with this time constant",
     "log_time_constant_omega": "the body's yaw rate follows that of its wheels with this time constant",
 }

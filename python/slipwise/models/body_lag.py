@@ -30,4 +30,5 @@ def body_lag_sentences(model: Model) -> list[str]:
     alike = len(said) == len(_AXES) and len(set(said.values())) == 1
     constants = [text if alike else f"{text} ({axis})" for axis, text in said.items()]
     constant = " and ".join(dict.fromkeys(constants))
-    return [f"The body follows its wheels with a time constant of {constant}: tracks, soft tyres or springs."]
+    cause = "tracks, soft tyres, springs or a slow steering"
+    return [f"The body follows its wheels with a time constant of {constant}: {cause}."]
