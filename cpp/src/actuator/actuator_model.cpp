@@ -109,9 +109,9 @@ class ActuatorWalk {
         warm_up_(warm_up()),
         rounding_(warm_up_ > 0.0 ? 0.0 : kSameStamp),
         cursor_v_(inputs, actuator, {actuator.delay_v, kSpeedPlaces.delay}, model_start_.t - warm_up_ + rounding_,
-                  last_input()),
+                  last_input(speed_.longest_lag())),
         cursor_omega_(inputs, actuator, {actuator.delay_omega, kTurnPlaces.delay},
-                      model_start_.t - warm_up_ + rounding_, last_input()),
+                      model_start_.t - warm_up_ + rounding_, last_input(turn_.longest_lag())),
         v_(speed_, kSpeedPlaces),
         vy_(speed_, kSpeedPlaces),
         omega_(turn_, kTurnPlaces) {
@@ -147,8 +147,11 @@ class ActuatorWalk {
   using Row = Axis::Row;
   static constexpr bool kDerivatives = N > 0;
 
-  /// Stamp of the last input that may drive the window [s]: of poses that are stamped early, one after its end.
-  double last_input() const { return std::clamp(end_.t - kOfSampling, window_.end, window_.end + window_.ahead); }
+  /// Stamp of the last input that may drive an axis in the window [s]: of poses that are stamped early, one after its
+  /// end. What lags is that much later than its clock says.
+  double last_input(double lag) const {
+    return std::clamp(end_.t - kOfSampling - lag, window_.end, window_.end + window_.ahead);
+  }
 
   Knot knot_of(double stamp) const { return {stamp - actuator_.clock_offset, kOffset}; }
 

@@ -35,7 +35,7 @@ def drive(seed: int, seconds: float) -> Drive:
 def models(tmp_path_factory: pytest.TempPathFactory) -> dict[int, Model]:
     """Each learned from a drive of its own, saved, and read; by the drive's seed."""
     folder = tmp_path_factory.mktemp("models")
-    logs = {seed: simulated_log(drive(seed, 1800.0)) for seed in (1, 21, 22, 23)}
+    logs = {seed: simulated_log(drive(seed, 1800.0)) for seed in (1, 21, 22, 23, 31, 32, 33, 34)}
     learned = {seed: calibrate(log, input="wheel", settings=SETTINGS).model for seed, log in logs.items()}
     return {seed: load_model(model.save(folder / f"{seed}.yaml")) for seed, model in learned.items()}
 
@@ -54,7 +54,8 @@ def test_the_file_says_that_slip_wanders_and_how_far(models: dict[int, Model]) -
         assert disturbance.segment == SETTINGS.segment_length("wheel")
         assert disturbance.candidates[0].weight < 0.01  # of slip that does not
         stds = np.sqrt(np.diag(model.covariance_over(0.01) - model.covariance))
-        assert stds == pytest.approx(0.1, rel=0.4)
+        assert stds[:2] == pytest.approx(0.1, rel=0.4)
+        assert not stds[2:].any()
 
 
 @pytest.mark.slow

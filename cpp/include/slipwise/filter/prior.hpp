@@ -27,7 +27,7 @@ struct PriorSettings {
   double time_constant = 0.3;       ///< median time constant [s]
   double delay = 0.1;               ///< median transport delay [s]
   double log_std = 0.8;             ///< standard deviation of the logarithms of lags and delays [-]
-  double body_lag = 0.015;          ///< median time constant of a body behind its wheels [s]
+  double body_lag = 0.018;          ///< median time constant of a body behind its wheels [s]
   double body_lag_log_std = 1.0;    ///< standard deviation of its logarithm [-]
   double gain_std = 0.2;            ///< of the drive over the input, about 1 [-]
   double slow_fraction_std = 0.3;   ///< of the fraction of the drive that follows slowly, about 0 [-]
