@@ -62,6 +62,7 @@ class RowReader:
         self._kinds: dict[tuple[str, ...], dict[str, str]] = {}  # measurement of each column, by all of them
         self._said: set[str] = set()
         self._sourced = False
+        self._headed: set[str] = set()  # sources with a heading; others measure positions
         self.restart()
 
     def restart(self) -> None:
@@ -170,7 +171,9 @@ class RowReader:
                 verb = "is" if len(pose) == 1 else "are"
                 notes.append(f"{_WHERE}: {', '.join(pose)} {verb} used where both x and y are there")
             return
-        needed = [pose[name] for name in ("x", "y", "yaw") if name in pose]
+        source = text_of(view.cells, "source")
+        headed = "yaw" in view.cells or not source or source in self._headed
+        needed = [pose[name] for name in ("x", "y", *(["yaw"] if headed else [])) if name in pose]
         if not self._is_new(view, pose, needed):
             return
         if not all(map(math.isfinite, needed)):
@@ -180,11 +183,12 @@ class RowReader:
         if fix == NO_FIX:
             view.leave_out(f"poses {WITHOUT_FIX}")
             return
-        source = text_of(view.cells, "source")
         self._sourced = self._sourced or bool(source)
         if not source and self._sourced and "source" in view.names:
             view.leave_out(UNNAMED)
             return
+        if source and headed:
+            self._headed.add(source)
         yield self._pose(view, pose, source, FIXES[fix])
 
     def _is_new(self, view: _View, pose: Mapping[str, float], needed: Sequence[float]) -> bool:
