@@ -26,6 +26,27 @@ std::vector<Eigen::Index> range(Eigen::Index first, Eigen::Index last) {
   return places;
 }
 
+/// What was learned behind the wheels, but for lags of the body: behind an actuator that lags itself they count as
+/// lateness of the poses, half of each axis.
+struct WithoutLags {
+  std::vector<Eigen::Index> kept;  ///< places
+  Eigen::MatrixXd by;              ///< [kept, all]
+  Eigen::VectorXd mean;
+
+  WithoutLags(const MotionModel& model, const Eigen::VectorXd& all) {
+    const Eigen::Index slips = model.slip_size(), lags = model.learned().lags ? 2 : 0;
+    kept = range(0, slips);
+    const std::vector<Eigen::Index> others = range(slips + lags, all.size());
+    kept.insert(kept.end(), others.begin(), others.end());
+    by = Eigen::MatrixXd::Identity(all.size(), all.size())(kept, Eigen::all);
+    mean = all(kept);
+    if (lags > 0 && model.learned().clock_offset) {
+      by.row(slips).segment(slips, lags) = 0.5 * all.segment(slips, lags).array().exp();
+      mean[slips] += by.row(slips).segment(slips, lags).sum();
+    }
+  }
+};
+
 bool stronger(const SlipChange& a, const SlipChange& b) {
   return std::tuple(a.alarm, a.log_odds) > std::tuple(b.alarm, b.log_odds);
 }
@@ -91,8 +112,9 @@ void CascadedModel::begin_with(const Estimate& actuator, const CausalFilterSetti
 
 Estimate CascadedModel::joined(const Estimate& slip, const Estimate& actuator) const {
   Estimate all{Eigen::VectorXd(model_.size()), Eigen::MatrixXd::Zero(model_.size(), model_.size())};
-  all.mean(places_of_slip_) = slip.mean;
-  all.covariance(places_of_slip_, places_of_slip_) = slip.covariance;
+  const WithoutLags behind(slip_.average().model(), slip.mean);
+  all.mean(places_of_slip_) = behind.mean;
+  all.covariance(places_of_slip_, places_of_slip_) = behind.by * slip.covariance * behind.by.transpose();
   all.mean(places_of_actuator_) = actuator.mean;
   all.covariance(places_of_actuator_, places_of_actuator_) = actuator.covariance;
   return all;
@@ -116,9 +138,10 @@ void CascadedModel::refresh() {
                       .variance_ratio = Eigen::VectorXd(size),
                       .basis_weights = slip.weights,
                       .structure = Structure::Cascaded};
-  all.prior_std(places_of_slip_) = slip.prior_std;
+  const std::vector<Eigen::Index> kept = WithoutLags(slip_.average().model(), slip.estimate.mean).kept;
+  all.prior_std(places_of_slip_) = slip.prior_std(kept);
   all.prior_std(places_of_actuator_) = actuator_.prior_std();
-  all.variance_ratio(places_of_slip_) = slip.variance_ratio;
+  all.variance_ratio(places_of_slip_) = slip.variance_ratio(kept);
   all.variance_ratio(places_of_actuator_) =
       actuator.covariance.diagonal().cwiseQuotient(actuator_.prior_std().cwiseAbs2());
   posterior_ = std::make_shared<const MotionPosterior>(std::move(all));

@@ -122,7 +122,8 @@ void CascadedModel::check_loaded(const CascadedModel& made) const {
   require(archive::same(model_, made.model_) && archive::same(noise_, made.noise_) &&
               places_of_slip_ == made.places_of_slip_ && places_of_actuator_ == made.places_of_actuator_ &&
               posterior_ && archive::same(posterior_->model, model_) &&
-              known_slip_.holds(std::ssize(places_of_slip_)) && known_actuator_.holds(std::ssize(places_of_actuator_)),
+              known_slip_.holds(made.slip_.average().model().size()) &&
+              known_actuator_.holds(std::ssize(places_of_actuator_)),
           "a cascade is of another model");
   slip_.check_loaded(made.slip_);
   actuator_.check_loaded(made.actuator_);

@@ -86,10 +86,11 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
     attempt(Structure::Baseline);
   }
   if (settings.cascaded && settings.dynamics) {
-    cascaded_.emplace(RememberingAverage(ModelAverage(
-                          "auto", settings.bases,
-                          {.clock_offset = settings.clock_offset, .sensor_extrinsics = settings.sensor_extrinsics},
-                          settings.filter, settings.average)),
+    cascaded_.emplace(RememberingAverage(ModelAverage("auto", settings.bases,
+                                                      {.clock_offset = settings.clock_offset,
+                                                       .sensor_extrinsics = settings.sensor_extrinsics,
+                                                       .lags = settings.clock_offset},
+                                                      settings.filter, settings.average)),
                       settings.filter, settings.wheelbase);
   }
   tried_.normalise();
