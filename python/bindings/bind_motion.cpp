@@ -118,7 +118,7 @@ void bind_motion(nb::module_& m) {
       .def_ro("unit", &ParameterInfo::unit)
       .def_ro("description", &ParameterInfo::description);
   m.def("lag_shows", &lag_shows, "log_mean"_a, "log_std"_a,
-        "Whether a lag of the body [ln s] is surely long enough to be told from a clock that is as late.");
+        "Whether a lag of the body [ln s] is surely long enough to be distinguished from a late clock.");
   nb::class_<MotionModel>(m, "MotionModel", "A slip basis behind an actuator model.")
       .def(
           "__init__",

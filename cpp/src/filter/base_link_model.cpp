@@ -28,6 +28,10 @@ std::optional<Eigen::Index> place_of_offset(const MotionModel& model) {
   return found == names.end() ? std::nullopt : std::optional<Eigen::Index>(found - names.begin());
 }
 
+Eigen::Vector2d lateness_of_lags(const MotionModel& model, const Eigen::VectorXd& parameters) {
+  return 0.5 * parameters.segment<2>(model.slip_size()).array().exp();
+}
+
 KnownModel of_base_link(const MotionModel& model, const Estimate& estimate) {
   ActuatorParameters learned = model.learned();
   learned.sensor_extrinsics = learned.clock_offset = false;

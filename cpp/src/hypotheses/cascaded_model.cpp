@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "slipwise/actuator/kinematics.hpp"
+#include "slipwise/filter/base_link_model.hpp"
 
 namespace slipwise {
 namespace {
@@ -26,26 +27,25 @@ std::vector<Eigen::Index> range(Eigen::Index first, Eigen::Index last) {
   return places;
 }
 
-/// What was learned behind the wheels, but for lags of the body: behind an actuator that lags itself they count as
-/// lateness of the poses, half of each axis.
-struct WithoutLags {
-  std::vector<Eigen::Index> kept;  ///< places
-  Eigen::MatrixXd by;              ///< [kept, all]
-  Eigen::VectorXd mean;
+/// Places of what was learned behind the wheels, but for lags of the body.
+std::vector<Eigen::Index> places_without_lags(const MotionModel& slip) {
+  std::vector<Eigen::Index> places = range(0, slip.slip_size());
+  const std::vector<Eigen::Index> others = range(slip.slip_size() + (slip.learned().lags ? 2 : 0), slip.size());
+  places.insert(places.end(), others.begin(), others.end());
+  return places;
+}
 
-  WithoutLags(const MotionModel& model, const Eigen::VectorXd& all) {
-    const Eigen::Index slips = model.slip_size(), lags = model.learned().lags ? 2 : 0;
-    kept = range(0, slips);
-    const std::vector<Eigen::Index> others = range(slips + lags, all.size());
-    kept.insert(kept.end(), others.begin(), others.end());
-    by = Eigen::MatrixXd::Identity(all.size(), all.size())(kept, Eigen::all);
-    mean = all(kept);
-    if (lags > 0 && model.learned().clock_offset) {
-      by.row(slips).segment(slips, lags) = 0.5 * all.segment(slips, lags).array().exp();
-      mean[slips] += by.row(slips).segment(slips, lags).sum();
-    }
+/// The same estimate: behind an actuator that lags itself, lags of the body count as lateness of the poses.
+Estimate without_lags(const MotionModel& slip, const Estimate& estimate, const std::vector<Eigen::Index>& kept) {
+  Eigen::VectorXd mean = estimate.mean(kept);
+  Eigen::MatrixXd by = Eigen::MatrixXd::Identity(slip.size(), slip.size())(kept, Eigen::all);
+  if (slip.learned().lags) {  // the clock offset comes behind them
+    const Eigen::Index clock = slip.slip_size();
+    by.row(clock).segment<2>(clock) = lateness_of_lags(slip, estimate.mean);
+    mean[clock] += by.row(clock).segment<2>(clock).sum();
   }
-};
+  return {std::move(mean), by * estimate.covariance * by.transpose()};
+}
 
 bool stronger(const SlipChange& a, const SlipChange& b) {
   return std::tuple(a.alarm, a.log_odds) > std::tuple(b.alarm, b.log_odds);
@@ -112,9 +112,10 @@ void CascadedModel::begin_with(const Estimate& actuator, const CausalFilterSetti
 
 Estimate CascadedModel::joined(const Estimate& slip, const Estimate& actuator) const {
   Estimate all{Eigen::VectorXd(model_.size()), Eigen::MatrixXd::Zero(model_.size(), model_.size())};
-  const WithoutLags behind(slip_.average().model(), slip.mean);
-  all.mean(places_of_slip_) = behind.mean;
-  all.covariance(places_of_slip_, places_of_slip_) = behind.by * slip.covariance * behind.by.transpose();
+  const MotionModel& behind = slip_.average().model();
+  const Estimate late = without_lags(behind, slip, places_without_lags(behind));
+  all.mean(places_of_slip_) = late.mean;
+  all.covariance(places_of_slip_, places_of_slip_) = late.covariance;
   all.mean(places_of_actuator_) = actuator.mean;
   all.covariance(places_of_actuator_, places_of_actuator_) = actuator.covariance;
   return all;
@@ -138,7 +139,7 @@ void CascadedModel::refresh() {
                       .variance_ratio = Eigen::VectorXd(size),
                       .basis_weights = slip.weights,
                       .structure = Structure::Cascaded};
-  const std::vector<Eigen::Index> kept = WithoutLags(slip_.average().model(), slip.estimate.mean).kept;
+  const std::vector<Eigen::Index> kept = places_without_lags(slip_.average().model());
   all.prior_std(places_of_slip_) = slip.prior_std(kept);
   all.prior_std(places_of_actuator_) = actuator_.prior_std();
   all.variance_ratio(places_of_slip_) = slip.variance_ratio(kept);

@@ -60,7 +60,7 @@ std::optional<PoseLateness> learned_lateness(const MotionModel& model, const Est
   const Eigen::Index lags = model.slip_size();  // of speed and yaw rate, where there are any
   const auto shows = [&](Eigen::Index i) { return lag_shows(estimate.mean[i], std::sqrt(estimate.covariance(i, i))); };
   if (model.learned().lags && !shows(lags) && !shows(lags + 1)) {
-    by.segment<2>(lags) = 0.5 * estimate.mean.segment<2>(lags).array().exp();
+    by.segment<2>(lags) = lateness_of_lags(model, estimate.mean);
     mean += by.segment<2>(lags).sum();
   }
   const double variance = by.dot(estimate.covariance * by) + spacing * spacing / 12.0;

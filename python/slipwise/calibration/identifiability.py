@@ -11,7 +11,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.learner import Posterior
-from slipwise.models.body_lag import is_body_lag
+from slipwise.models.body_lag import is_body_lag, is_hidden_lag
 from slipwise.models.parameter_table import physical_name
 from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 
@@ -50,7 +50,7 @@ def confounded(posterior: Posterior) -> tuple[Confounded, ...]:
     hidden = {
         i
         for i, name in enumerate(names)
-        if posterior.motion.lags and is_body_lag(name) and not _core.lag_shows(posterior.mean[i], stds[i])
+        if posterior.motion.lags and is_hidden_lag(name, posterior.mean[i], stds[i])
     }
     pairs = _core.correlated_pairs(posterior.covariance, LOOK_ALIKE)
     return tuple(

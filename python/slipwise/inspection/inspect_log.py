@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise import _core
 from slipwise.calibration import Settings
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.prepared_run import choose_input
@@ -23,7 +22,7 @@ from slipwise.inspection.learnability import Learnability, LearnableParameter, l
 from slipwise.logs import Log, LogOptions, Survey, open_log, survey_log
 from slipwise.logs.findings.diagnose import each_once
 from slipwise.logs.findings.finding import Finding, RefusedLogError
-from slipwise.models.body_lag import is_body_lag
+from slipwise.models.body_lag import is_hidden_lag
 from slipwise.segments import WindowRules
 
 Floats = NDArray[np.float64]
@@ -203,7 +202,7 @@ def timing_of(learned: Learnability) -> tuple[Timing, ...]:
     return tuple(
         _timing(learned.input, p, meaning + (included if "delay" in p.name else ""))
         for p, meaning in found
-        if not (wheels and is_body_lag(p.name)) or _core.lag_shows(p.value, p.std)
+        if not (wheels and is_hidden_lag(p.name, p.value, p.std))
     )
 
 

@@ -17,6 +17,11 @@ def is_body_lag(name: str) -> bool:
     return name.removeprefix("log_") in _AXES
 
 
+def is_hidden_lag(name: str, value: float, std: float) -> bool:
+    """Whether a parameter of such a model is a lag that may be none, but a late clock."""
+    return is_body_lag(name) and not _core.lag_shows(value, std)
+
+
 def body_lag_sentences(model: Model) -> list[str]:
     """Say how the body follows its wheels, where a log showed it."""
     rows = {row.name.removeprefix("log_"): row for row in model.vector.rows if model.content.lags}

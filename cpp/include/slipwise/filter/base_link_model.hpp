@@ -13,6 +13,10 @@ namespace slipwise {
 /// Where the clock offset stands among the parameters, if it is learned.
 std::optional<Eigen::Index> place_of_offset(const MotionModel& model);
 
+/// How late lags of the body alone make it, as one time for both axes: half of each [s]. That is its derivative by
+/// their logarithms too.
+Eigen::Vector2d lateness_of_lags(const MotionModel& model, const Eigen::VectorXd& parameters);
+
 /// A model and its parameters.
 struct KnownModel {
   MotionModel model;

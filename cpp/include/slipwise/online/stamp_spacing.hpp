@@ -22,8 +22,8 @@ struct PoseLateness {
 std::shared_ptr<const MotionPosterior> supported(std::shared_ptr<const MotionPosterior> posterior, double seconds,
                                                  std::size_t segments);
 
-/// Whether a lag of the body behind its wheels is surely long enough to be told from a clock that is as late: its
-/// logarithm [ln s] and the standard deviation of that.
+/// Whether a lag of the body behind its wheels is surely long enough to be distinguished from a clock that is as late:
+/// its logarithm [ln s] and the standard deviation of that.
 bool lag_shows(double log_mean, double log_std);
 
 /// By the learned clock offset. Wheel speeds `seconds` apart that drive a model are held, half of that late; where
