@@ -143,6 +143,7 @@ wheel: $(STAMPS)/slipwise ## build a plain wheel into build/dist and try it
 	@$(PYTHON_IN) -m venv build/wheel/empty
 	@PIP_CONSTRAINT=constraints.txt PIP_BUILD_CONSTRAINT=constraints.txt build/wheel/empty/bin/python -m pip wheel --quiet \
 	  --no-deps --config-settings=build-dir=build/wheel/cmake --config-settings=install.components=nothing \
+	  --config-settings=cmake.define.SLIPWISE_TOGETHER=OFF \
 	  --config-settings=build.targets=CMakeFiles/_core.dir/python/bindings/bind_module.cpp.o --wheel-dir build/wheel/configured .
 	@$(PIP) wheel --quiet --no-deps --no-build-isolation --wheel-dir build/dist .
 	@build/wheel/empty/bin/python -m pip wheel --quiet --no-deps --wheel-dir build/dist packages/slipwise-sim

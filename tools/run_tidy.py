@@ -14,29 +14,18 @@ import re
 import shlex
 import subprocess
 import sys
+from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
-from functools import cache
+from dataclasses import dataclass
 from pathlib import Path
 
 from tools.check_includes import INCLUDE, ROOT
 
 BUILD = ROOT / "build/tidy"
 TOGETHER = BUILD / "together"
-MOST_SOURCES, MOST_LINES = 10, 1400  # of one text: 1 to 2 GB of memory
+MOST_SOURCES = 8  # of a folder, which CMakeLists.txt compiles together too
 SOURCES = re.compile(r"/cpp/src/")
-INCLUDED_FROM = (ROOT / "cpp/include", ROOT / "packages/slipwise-thesis/cpp/include")
-MARGIN, CONSTANT = re.compile(r"^[^\s/].*", re.MULTILINE), re.compile(r"\bk[A-Z]\w*")
 NOT_COMPILED = "[clang-diagnostic-error]"
-
-#: What a source defines for itself alone: a constant, a type, an alias, a function.
-OWN_NAME = re.compile(
-    r"^(?:SLIPWISE_TUNING\((?P<tuned>\w+)"
-    r"|#\s*define\s+(?P<macro>\w+)"
-    r"|using\s+(?P<alias>\w+)\s*="
-    r"|(?:struct|class|enum class|enum|namespace)\s+(?P<type>\w+)"
-    r"|(?![\s#}/]|using\b|template\b)[\w:<>,&*\s\[\]]*?(?<!::)\b(?P<value>\w+)\s*[({=;\[])"
-)
 
 
 @dataclass(frozen=True)
@@ -51,51 +40,17 @@ class Source:
         """Return what stands in the file."""
         return self.path.read_text(encoding="utf-8")
 
-    def own_names(self) -> set[str]:
-        """Return the names at the left margin; two sources with one of them are not read together."""
-        found = (OWN_NAME.match(line) for line in self.text.splitlines())
-        names = {name for each in found if each for name in each.groups() if name}
-        return names - {"slipwise", "namespace"}
 
-    def included_constants(self) -> set[str]:
-        """Return the constants of the headers that it includes; another source may have one of its own."""
-        return set().union(*(constants_of(name) for name in included(self.text)))
-
-
-def included(text: str) -> list[str]:
-    """Return the names of this repository's headers that a text includes."""
-    found = (INCLUDE.match(line) for line in text.splitlines())
-    return [each[2] for each in found if each and each[2].startswith("slipwise/")]
-
-
-@cache
-def constants_of(name: str) -> frozenset[str]:
-    """Return the constants of a header and of those that it includes."""
-    path = next((each / name for each in INCLUDED_FROM if (each / name).exists()), None)
-    text = "" if path is None else path.read_text(encoding="utf-8")
-    here = (each for line in MARGIN.findall(text) for each in CONSTANT.findall(line))
-    return frozenset(here).union(*map(constants_of, included(text)))
-
-
-@dataclass
+@dataclass(frozen=True)
 class Group:
     """Sources that are read as one text."""
 
-    sources: list[Source] = field(default_factory=list)
-    names: set[str] = field(default_factory=set)
-    constants: set[str] = field(default_factory=set)  # of headers
-    lines: int = 0
+    sources: list[Source]
 
-    def takes(self, source: Source, names: set[str], constants: set[str], lines: int) -> bool:
-        """Return whether a source may be read with those that are here."""
-        first = self.sources[0]
-        return (
-            len(self.sources) < MOST_SOURCES
-            and self.lines + lines <= MOST_LINES
-            and source.command == first.command
-            and not names & (self.names | self.constants)
-            and not constants & self.names
-        )
+    @property
+    def lines(self) -> int:
+        """Return the number of lines of all sources."""
+        return sum(each.text.count("\n") for each in self.sources)
 
 
 def sources_of(commands: Path) -> list[Source]:
@@ -110,19 +65,18 @@ def sources_of(commands: Path) -> list[Source]:
 
 
 def groups_of(sources: list[Source]) -> list[Group]:
-    """Return the sources in groups that can be read as one text, the largest first."""
-    groups: list[Group] = []
+    """Return the sources in groups of a folder, the largest first; one with options of its own is alone."""
+    folders: dict[Path, list[Source]] = {}
     for source in sorted(sources, key=lambda each: each.path):
-        names, constants, lines = source.own_names(), source.included_constants(), source.text.count("\n")
-        group = next((each for each in groups if each.takes(source, names, constants, lines)), None)
-        if group is None:
-            group = Group()
-            groups.append(group)
-        group.sources.append(source)
-        group.names |= names
-        group.constants |= constants
-        group.lines += lines
-    return sorted(groups, key=lambda each: -each.lines)
+        folders.setdefault(source.path.parent, []).append(source)
+    groups = []
+    for folder in folders.values():
+        usual, _ = Counter(each.command for each in folder).most_common(1)[0]
+        groups += [Group([each]) for each in folder if each.command != usual]
+        for first in range(0, len(folder), MOST_SOURCES):
+            together = folder[first : first + MOST_SOURCES]
+            groups.append(Group([each for each in together if each.command == usual]))
+    return sorted((each for each in groups if each.sources), key=lambda each: -each.lines)
 
 
 def written(group: Group, path: Path) -> list[tuple[Path, int]]:
@@ -168,10 +122,13 @@ def said_of(group: Group, path: Path, origins: list[tuple[Path, int]]) -> str:
 
 def main(pattern: str = "") -> int:
     """Print what clang-tidy finds in the sources whose path matches `pattern`; return 1 if anything."""
-    sources = [
-        each for each in sources_of(BUILD / "compile_commands.json") if re.search(pattern, str(each.path))
+    sources = sources_of(BUILD / "compile_commands.json")
+    chosen = {each.path for each in sources if re.search(pattern, str(each.path))}
+    groups = [
+        Group(here)
+        for group in groups_of(sources)
+        if (here := [each for each in group.sources if each.path in chosen])
     ]
-    groups = groups_of(sources)
     TOGETHER.mkdir(parents=True, exist_ok=True)
     work, commands = [], []
     for number, group in enumerate(groups):
@@ -182,7 +139,7 @@ def main(pattern: str = "") -> int:
     (TOGETHER / "compile_commands.json").write_text(json.dumps(commands), encoding="utf-8")
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         said = [text for text in pool.map(lambda each: said_of(*each), work) if text]
-    print("\n".join([*said, f"clang-tidy: {len(sources)} sources, {'faults' if said else 'no fault'}"]))
+    print("\n".join([*said, f"clang-tidy: {len(chosen)} sources, {'faults' if said else 'no fault'}"]))
     return 1 if said else 0
 
 

@@ -8,10 +8,17 @@
 #include <random>
 #include <vector>
 
+#include "slipwise/filter/estimate.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise::tests {
+
+inline const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.005};
+
+inline Estimate wide_prior(const MotionModel& model, double sigma = 0.2) {
+  return {Eigen::VectorXd::Zero(model.size()), sigma * sigma * Eigen::MatrixXd::Identity(model.size(), model.size())};
+}
 
 struct SimulationSettings {
   std::uint64_t seed = 1;

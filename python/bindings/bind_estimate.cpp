@@ -30,7 +30,7 @@ ExpectedPose as_chart(const ExpectedPose& expected, const Segment& segment) {
   return {chart_of(directions, expected.pose), chart_covariance(directions, expected.covariance)};
 }
 
-void bind_settings(nb::module_& m) {
+void bind_filter_settings(nb::module_& m) {
   nb::class_<IekfSettings>(m, "IekfSettings")
       .def(nb::init<>())
       .def_rw("iterations", &IekfSettings::iterations)
@@ -100,7 +100,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("surfaces", &ModelAverageSettings::surfaces);
 }
 
-void bind_results(nb::module_& m) {
+void bind_filter_results(nb::module_& m) {
   nb::class_<Estimate>(m, "Estimate", "Gaussian posterior about a parameter vector.")
       .def(
           "__init__",
@@ -135,8 +135,8 @@ void bind_results(nb::module_& m) {
 }  // namespace
 
 void bind_estimate(nb::module_& m) {
-  bind_settings(m);
-  bind_results(m);
+  bind_filter_settings(m);
+  bind_filter_results(m);
   m.def(
       "iekf_update",
       [](const MotionModel& model, const Estimate& prior, const InputHistory& inputs, const Segment& segment,

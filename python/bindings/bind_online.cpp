@@ -23,7 +23,7 @@ using namespace nb::literals;
 namespace slipwise::bindings {
 namespace {
 
-void bind_settings(nb::module_& m) {
+void bind_learner_settings(nb::module_& m) {
   nb::class_<SegmentRules>(m, "SegmentRules", "When two poses and the inputs between them make a segment.")
       .def(nb::init<>())
       .def_rw("late_factor", &SegmentRules::late_factor)
@@ -66,7 +66,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("learn_disturbance", &LearnerSettings::learn_disturbance);
 }
 
-void bind_results(nb::module_& m) {
+void bind_learner_results(nb::module_& m) {
   nb::class_<StudentCalibration>(m, "StudentCalibration", "Fits a Student t to the errors of predictions.")
       .def(nb::init<>())
       .def("learn", &StudentCalibration::learn, "squared"_a,
@@ -210,10 +210,10 @@ void bind_online(nb::module_& m) {
       .value("Attitude", Stream::Attitude)
       .value("Force", Stream::Force)
       .value("Reading", Stream::Reading);
-  bind_settings(m);
+  bind_learner_settings(m);
   bind_recordings(m);
   bind_evidence(m);
-  bind_results(m);
+  bind_learner_results(m);
   bind_events(m);
   bind_odometry(m);
   bind_surface_events(m);

@@ -34,7 +34,7 @@ Eigen::MatrixX3d pose_matrix(const std::vector<Pose2>& poses) {
   return matrix;
 }
 
-void bind_settings(nb::module_& m) {
+void bind_planner_settings(nb::module_& m) {
   nb::class_<DriveLimits>(m, "DriveLimits", "Limits of the commands [m/s, rad/s, 1/m, m/s^2].")
       .def(nb::init<double, double, double, double>(), "speed"_a, "yaw_rate"_a, "curvature"_a, "acceleration"_a)
       .def("check", &DriveLimits::check);
@@ -65,7 +65,7 @@ void bind_trajectory(nb::module_& m) {
       .value("Reached", TrajectoryStatus::Reached)
       .value("TooFar", TrajectoryStatus::TooFar)
       .value("Unreachable", TrajectoryStatus::Unreachable);
-  m.def("trajectory_advice", &advice, "status"_a);
+  m.def("trajectory_advice", [](TrajectoryStatus status) { return advice(status); }, "status"_a);
   nb::class_<Trajectory>(m, "Trajectory", "Held commands and the path that they cause, seen from the start.")
       .def_ro("status", &Trajectory::status)
       .def_ro("gap_xy", &Trajectory::gap_xy)
@@ -128,12 +128,12 @@ void bind_mppi_settings(nb::module_& m) {
 }
 
 template <int kColumns>
-using Rows = nb::ndarray<const double, nb::shape<-1, kColumns>, nb::c_contig, nb::device::cpu>;
+using PlannedRows = nb::ndarray<const double, nb::shape<-1, kColumns>, nb::c_contig, nb::device::cpu>;
 
 /// Rows are (v, vy, omega).
 DriveCommand command_of(const double* row) { return {.v = row[0], .omega = row[2], .vy = row[1]}; }
 
-std::vector<DriveCommand> commands_of(const Rows<3>& rows) {
+std::vector<DriveCommand> commands_of(const PlannedRows<3>& rows) {
   std::vector<DriveCommand> commands;
   for (std::size_t i = 0; i < rows.shape(0); ++i) {
     commands.push_back(command_of(&rows(i, 0)));
@@ -141,7 +141,7 @@ std::vector<DriveCommand> commands_of(const Rows<3>& rows) {
   return commands;
 }
 
-MppiReference reference_of(const Rows<3>& rows) {
+MppiReference reference_of(const PlannedRows<3>& rows) {
   MppiReference reference;
   for (std::size_t i = 0; i < rows.shape(0); ++i) {
     reference.x.push_back(static_cast<float>(rows(i, 0)));
@@ -197,8 +197,8 @@ void bind_mppi(nb::module_& m) {
           "models"_a, "settings"_a, "car"_a.none())
       .def(
           "step",
-          [](Mppi& self, const Pose2& pose, const Eigen::Vector3d& drive, const Rows<3>& past, const Rows<3>& reference,
-             const Costmap* map) {
+          [](Mppi& self, const Pose2& pose, const Eigen::Vector3d& drive, const PlannedRows<3>& past,
+             const PlannedRows<3>& reference, const Costmap* map) {
             const MppiState state{.start = {.pose = pose, .drive = command_of(drive.data())},
                                   .past = commands_of(past)};
             return self.step(state, reference_of(reference), map);
@@ -220,7 +220,7 @@ void bind_mppi(nb::module_& m) {
 
 void bind_planning(nb::module_& m) {
   using Cells = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-  bind_settings(m);
+  bind_planner_settings(m);
   bind_trajectory(m);
   bind_mppi_settings(m);
   bind_mppi(m);

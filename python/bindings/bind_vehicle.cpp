@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "bindings.hpp"
+#include "sample_rows.hpp"
 #include "slipwise/dynamics/dynamics_filter.hpp"
 #include "slipwise/lie/body_twist.hpp"
 #include "slipwise/vehicle/ackermann.hpp"
@@ -38,8 +39,6 @@ Eigen::MatrixX2d twist_rows(const Eigen::VectorXd& first, const Eigen::VectorXd&
   }
   return rows;
 }
-
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 std::optional<Hinge> hinge_at(const std::optional<std::pair<double, double>>& place) {
   return place ? std::optional<Hinge>({.x = place->first, .y = place->second}) : std::nullopt;
@@ -193,7 +192,7 @@ class PythonDynamics final : public DynamicsModel {
   nb::object jacobians_;  ///< or None
 };
 
-void bind_settings(nb::module_& m) {
+void bind_vehicle_settings(nb::module_& m) {
   nb::class_<DynamicsModel>(m, "DynamicsModel", "A user's own dynamics: x' = f(x, u, p).");
   nb::class_<PythonDynamics, DynamicsModel>(m, "PythonDynamics", "Dynamics whose functions are Python's.")
       .def(nb::init<nb::object, nb::object>(), "rates"_a, "jacobians"_a.none(),
@@ -264,7 +263,7 @@ void bind_vehicle(nb::module_& m) {
 }
 
 void bind_dynamics(nb::module_& m) {
-  bind_settings(m);
+  bind_vehicle_settings(m);
   nb::class_<DynamicsFilter>(m, "DynamicsFilter", "State and parameters of a user's dynamics, learned together.")
       .def(
           "__init__",

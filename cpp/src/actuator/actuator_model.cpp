@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -19,8 +18,6 @@ namespace slipwise {
 namespace {
 
 constexpr Eigen::Index kFixed = -1;
-constexpr Eigen::Index kOffset = 4;
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kOfSampling = 0.03;  // [s] of a clock offset below zero that wheel speeds make, since they are held
 
 /// Where the parameters of speed and yaw rate stand among the actuator's.
@@ -42,7 +39,7 @@ Eigen::Matrix<double, 1, N> derivative_between(const Knot& from, const Knot& unt
   if constexpr (N > 0) {
     for (const auto& [moment, sign] : {std::pair{until, 1.0}, std::pair{from, -1.0}}) {
       if (moment.parameter != kFixed) {
-        row[moment.parameter] += moment.parameter == kOffset ? -sign : sign;
+        row[moment.parameter] += moment.parameter == kClockOffset ? -sign : sign;
       }
     }
   }
@@ -153,7 +150,7 @@ class ActuatorWalk {
     return std::clamp(end_.t - kOfSampling - lag, window_.end, window_.end + window_.ahead);
   }
 
-  Knot knot_of(double stamp) const { return {stamp - actuator_.clock_offset, kOffset}; }
+  Knot knot_of(double stamp) const { return {stamp - actuator_.clock_offset, kClockOffset}; }
 
   bool steers() const { return actuator_.wheelbase > 0.0; }
 

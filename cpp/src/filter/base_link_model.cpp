@@ -14,7 +14,7 @@
 namespace slipwise {
 namespace {
 
-constexpr double kSure = 2.0;         // standard deviations
+constexpr double kShows = 2.0;        // standard deviations
 constexpr double kLeastDelay = 2e-3;  // [s] its logarithm is learned
 
 }  // namespace
@@ -40,7 +40,7 @@ KnownModel of_base_link(const MotionModel& model, const Estimate& estimate) {
   KnownModel found{std::move(body), {estimate.mean.head(kept), estimate.covariance.topLeftCorner(kept, kept)}};
   const std::optional<Eigen::Index> clock = place_of_offset(model);
   const double early = clock ? -estimate.mean[*clock] : 0.0;
-  if (!clock || !(early > kSure * std::sqrt(estimate.covariance(*clock, *clock)))) {
+  if (!clock || !(early > kShows * std::sqrt(estimate.covariance(*clock, *clock)))) {
     return found;
   }
   Eigen::VectorXd& mean = found.estimate.mean;

@@ -18,18 +18,18 @@
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kMotion, 800.0);                 // [s] of motion from one jump to the next, on average
-SLIPWISE_TUNING(kMost, std::size_t{8});          // branches that are kept
-constexpr std::array kSizes{0.1, 0.35};          // standard deviations of jumps, as fractions of the motion
-SLIPWISE_TUNING(kMinor, 0.1);                    // as large are those of the other terms of a channel
-SLIPWISE_TUNING(kShape, 2.0);                    // of the size, the part of slip as it was that a jump adds or takes
-SLIPWISE_TUNING(kForgetting, 0.05);              // for each jump, births in which all slip is forgotten
-SLIPWISE_TUNING(kForgetAfter, std::size_t{20});  // segments before the first of them
-SLIPWISE_TUNING(kMoves, 0.02);                   // of the reference speeds; slower robots are parked
-constexpr double kSure = 0.9;                    // of the weight; so much counts as another terrain at once
-constexpr double kAlmostAll = 1.0 - 1e-12;       // of the weight, whose odds are finite
-SLIPWISE_TUNING(kTempered, 0.5);                 // power of the number of segments that count as one
-SLIPWISE_TUNING(kAlike, std::size_t{16});        // segments ago, when slip had not changed yet that does so now
+SLIPWISE_TUNING(kMotion, 800.0);                   // [s] of motion from one jump to the next, on average
+SLIPWISE_TUNING(kMost, std::size_t{8});            // branches that are kept
+constexpr std::array kSizes{0.1, 0.35};            // standard deviations of jumps, as fractions of the motion
+SLIPWISE_TUNING(kMinor, 0.1);                      // as large are those of the other terms of a channel
+SLIPWISE_TUNING(kShape, 2.0);                      // of the size, the part of slip as it was that a jump adds or takes
+SLIPWISE_TUNING(kForgetting, 0.05);                // for each jump, births in which all slip is forgotten
+SLIPWISE_TUNING(kForgetAfter, std::size_t{20});    // segments before the first of them
+SLIPWISE_TUNING(kMoves, 0.02);                     // of the reference speeds; slower robots are parked
+constexpr double kSureWeight = 0.9;                // of the weight; so much counts as another terrain at once
+constexpr double kAlmostAll = 1.0 - 1e-12;         // of the weight, whose odds are finite
+SLIPWISE_TUNING(kTempered, 0.5);                   // power of the number of segments that count as one
+SLIPWISE_TUNING(kAlikeSegments, std::size_t{16});  // segments ago, when slip had not changed yet that does so now
 
 /// The slip of one channel, by the size of its terms' jumps where the channel's most is 1.
 JumpingChannel jumping(const Basis& basis, Channel channel, std::string_view main) {
@@ -300,7 +300,7 @@ SlipChange BranchBank::look_for_change() {
   ++held_;
   const SlipChange change{.log_odds = std::log(young) - std::log1p(-std::min(young, kAlmostAll)),
                           .segments = static_cast<int>(segments_ - born),
-                          .alarm = held_ == kHeld || young > kSure};
+                          .alarm = held_ == kHeld || young > kSureWeight};
   if (change.alarm) {
     known_ = births_;
     held_ = 0;
@@ -312,7 +312,7 @@ SlipChange BranchBank::look_for_change() {
 /// now and what showed before counts half each.
 double BranchBank::alike_of_late(double alike) {
   alike_.push_back(alike);
-  if (alike_.size() <= kAlike) {
+  if (alike_.size() <= kAlikeSegments) {
     return alike;
   }
   const double earlier = alike_.front();

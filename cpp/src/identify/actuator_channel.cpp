@@ -23,7 +23,6 @@ SLIPWISE_TUNING(kMemory, 40.0);
 SLIPWISE_TUNING(kMostGain, 8.0);   // of a window's noise over the expected
 SLIPWISE_TUNING(kStraight, 0.03);  // as in iekf_update
 SLIPWISE_TUNING(kUnknown, 1.0);
-constexpr Eigen::Index kTimeConstant = 0, kDelay = 1, kSlowTimeConstant = 4;
 constexpr std::array kTimes{kTimeConstant, kDelay, kSlowTimeConstant};  // parameters that are logarithms of times
 
 /// Of the state of the axis that is followed as the i-th.

@@ -18,8 +18,7 @@ constexpr std::size_t kFollowed = 4;  // or learned
 SLIPWISE_TUNING(kTolerance, 0.1);     // what a step has to gain of -2 log posterior
 SLIPWISE_TUNING(kMostPasses, 12);     // with more windows it goes on from there
 SLIPWISE_TUNING(kMostElsewhere, 10);  // the same from a start elsewhere
-constexpr Eigen::Index kTimeConstant = 0, kSlowFraction = 3, kSlowTimeConstant = 4;
-SLIPWISE_TUNING(kApart, 1.4);  // in the logarithm: time constants closer than that may pass for each other
+SLIPWISE_TUNING(kApart, 1.4);         // in the logarithm: time constants closer than that may pass for each other
 
 /// All in one lag, and a slower one beside it.
 ChannelParameters without_slow_mode(ChannelParameters actuator) {

@@ -35,7 +35,7 @@ struct ActuatorParameter {
   const char* description;
 };
 
-constexpr Eigen::Index kDelayV = kActuatorParameters;  // row of the first delay in seconds
+constexpr Eigen::Index kDelaySeconds = kActuatorParameters;  // row of the first delay in seconds
 
 /// In ActuatorModel's order, then the delays once more: in seconds, not as logarithms.
 constexpr std::array<ActuatorParameter, kActuatorParameters + 2> kActuator{{
@@ -68,10 +68,7 @@ std::string described(std::string description, bool steers) {
   return at == std::string::npos ? description : description.replace(at, kTurn.size(), "steering");
 }
 
-Eigen::Index place_of(Eigen::Index row) {
-  constexpr Eigen::Index kFirstDelay = 2;  // in ActuatorModel's order
-  return row < kDelayV ? row : kFirstDelay + row - kDelayV;
-}
+Eigen::Index place_of(Eigen::Index row) { return row < kDelaySeconds ? row : kDelayV + row - kDelaySeconds; }
 
 }  // namespace
 
@@ -94,9 +91,9 @@ MotionModel::MotionModel(Basis basis, ActuatorParameters learned) : basis_(std::
   };
   add(learned_.dynamics, {0, 1, 2, 3});
   add(learned_.lags, {0, 1});
-  add(learned_.delays, {kDelayV, kDelayV + 1});
+  add(learned_.delays, {kDelaySeconds, kDelaySeconds + 1});
   add(learned_.response, {5, 6, 7, 8, 9, 10});
-  add(learned_.clock_offset, {4});
+  add(learned_.clock_offset, {kClockOffset});
   std::ranges::transform(actuator_rows_, std::back_inserter(actuator_places_), place_of);
 }
 

@@ -14,7 +14,7 @@ constexpr double kQuarter = std::numbers::pi / 2.0;
 constexpr double kMounted = std::numbers::sqrt2 / 2.0;      // cosine of the tilt from which on it is that of a mounting
 constexpr double kSteepest = 0.5;                           // cosine of a tilt that no robot drives on
 constexpr double kLevelPitch = std::numbers::pi / 4.0;      // [rad] beyond which the yaw of a sensor is not its robot's
-constexpr double kTurn = 2.0 * std::numbers::pi;            // [rad] what is more is no angle
+constexpr double kWholeTurn = 2.0 * std::numbers::pi;       // [rad] what is more is no angle
 constexpr double kAskew = 20.0 * std::numbers::pi / 180.0;  // [rad] by which a mounting is off whole quarters at most
 
 /// The same attitude with a pitch of at most a quarter of a turn.
@@ -45,7 +45,7 @@ AttitudeMounting AttitudeGate::mounting() const {
 }
 
 std::optional<Tilt> AttitudeGate::level(const Tilt& measured) {
-  if (std::abs(measured.roll) > kTurn || std::abs(measured.pitch) > kTurn) {
+  if (std::abs(measured.roll) > kWholeTurn || std::abs(measured.pitch) > kWholeTurn) {
     return std::nullopt;
   }
   const Tilt tilt = in_one_turn(measured);

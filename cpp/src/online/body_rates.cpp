@@ -11,10 +11,10 @@
 namespace slipwise {
 namespace {
 
-constexpr double kInterval = 0.5;   // [s] over which rates are means
-constexpr double kLongest = 1.5;    // [s]; means over longer ones hide what the robot did
-constexpr double kFraction = 0.99;  // of the motion that stayed below a rate
-constexpr double kClose = 0.26;     // [s] between poses whose way is smooth from one to the next
+constexpr double kRateTime = 0.5;         // [s] over which rates are means
+constexpr double kLongestRateTime = 1.5;  // [s]; means over longer ones hide what the robot did
+constexpr double kFraction = 0.99;        // of the motion that stayed below a rate
+constexpr double kClose = 0.26;           // [s] between poses whose way is smooth from one to the next
 constexpr double kMilli = 1e3;
 constexpr double kLeast = 2e-3;  // [mm, mrad] counts as no scatter: what is less is not counted by a range
 // By so many standard deviations the greatest hundredth of noisy numbers is too large: of rates, where a drive is near
@@ -92,13 +92,14 @@ double PoseScatter::yaw() const { return median(yaws_) / kMedianOfOne; }
 
 void BodyRates::push(const MeasuredPose& pose) {
   scatter_.push(pose);
-  if (!from_ || from_->frame != pose.frame || from_->position != pose.position || later(pose.t, from_->t + kLongest)) {
+  if (!from_ || from_->frame != pose.frame || from_->position != pose.position ||
+      later(pose.t, from_->t + kLongestRateTime)) {
     restart();
     from_ = pose;
     return;
   }
   const double seconds = pose.t - from_->t;
-  if (later(kInterval, seconds)) {
+  if (later(kRateTime, seconds)) {
     return;
   }
   const Pose2 first{from_->x, from_->y, from_->yaw};
@@ -132,8 +133,8 @@ void BodyRates::restart() {
 }
 
 MeasuredRates BodyRates::found() const {
-  const double rate = kRateTooLarge * std::numbers::sqrt2 / kInterval;               // of one pose less another
-  const double change = kChangeTooLarge * std::sqrt(6.0) / (kInterval * kInterval);  // of 1, -2 and 1 of three
+  const double rate = kRateTooLarge * std::numbers::sqrt2 / kRateTime;               // of one pose less another
+  const double change = kChangeTooLarge * std::sqrt(6.0) / (kRateTime * kRateTime);  // of 1, -2 and 1 of three
   const double place = scatter_.place();
   const double yaw = scatter_.yaw();
   return {.speed = values(speed_, rate * place),

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <ranges>
 #include <utility>
 
@@ -15,12 +14,11 @@
 namespace slipwise {
 namespace {
 
-constexpr double kInterval = 0.2;  // [s] between the poses of a twist; shorter, noise of poses hides the motion
-constexpr double kFresh = 0.05;    // [s] between moments at which what the car does is known
-constexpr double kLongest = 1.0;   // [s] of a twist; over longer ones a car does too much
-constexpr double kBefore = 5.0;    // [s] of twists before a segment, which delays and lags behind the curves ask for
-constexpr double kLongAgo = 1e5;   // [s] the first of them was held for
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kTwistTime = 0.2;         // [s] between the poses of a twist; shorter, noise of poses hides the motion
+constexpr double kFresh = 0.05;            // [s] between moments at which what the car does is known
+constexpr double kLongestTwistTime = 1.0;  // [s] of a twist; over longer ones a car does too much
+constexpr double kBefore = 5.0;   // [s] of twists before a segment, which delays and lags behind the curves ask for
+constexpr double kLongAgo = 1e5;  // [s] the first of them was held for
 
 BodyTwist faster(const BodyTwist& a, const BodyTwist& b) {
   return {.v = std::abs(a.v) > std::abs(b.v) ? a.v : b.v,
@@ -89,8 +87,8 @@ void CarStream::push_pose(const MeasuredPose& pose) {
     }
   }
   const double seconds = since_ ? pose.t - since_->t : 0.0;
-  const bool joined = since_ && pose.frame == since_->frame && !later(seconds, kLongest);
-  const bool part = joined && later(kInterval, seconds);
+  const bool joined = since_ && pose.frame == since_->frame && !later(seconds, kLongestTwistTime);
+  const bool part = joined && later(kTwistTime, seconds);
   if (part && later(kFresh, motions_.empty() ? seconds : pose.t - std::max(since_->t, motions_.back().t))) {
     return;
   }
@@ -105,7 +103,7 @@ void CarStream::push_pose(const MeasuredPose& pose) {
   if (part) {  // too short to learn from
     if (measured) {
       const CarCurveFilter& filter = follower_ ? *follower_ : filter_;
-      motions_.push_back(filter.motion(commands, pose.t, *measured, seconds / kInterval));
+      motions_.push_back(filter.motion(commands, pose.t, *measured, seconds / kTwistTime));
     }
     return;
   }

@@ -17,9 +17,9 @@ namespace {
 SLIPWISE_TUNING(kOldest, 3.0);          // [s] what was driven before tells little of where the robot heads
 SLIPWISE_TUNING(kShortest, 0.25);       // [m] a way that spreads like a straight line so long has a course
 SLIPWISE_TUNING(kCourseTime, 0.5);      // [s] at the fastest commanded speed so far make a way that is long enough,
-SLIPWISE_TUNING(kLongest, 0.5);         // [m] which is no longer,
+SLIPWISE_TUNING(kLongestWay, 0.5);      // [m] which is no longer,
 SLIPWISE_TUNING(kLengthOfNoise, 10.0);  // unless it would not be this many of the standard deviations that are stated
-constexpr double kApart = 3.0;          // a way and the same by the inputs may differ by this factor
+constexpr double kWaysApart = 3.0;      // a way and the same by the inputs may differ by this factor
 constexpr double kFewest = 3.0;         // positions
 constexpr double kOfLine = 12.0;        // a line is so many times longer squared than it spreads
 
@@ -56,7 +56,7 @@ struct Together {
 
 double length_for(const MeasuredPose& position, const InputBuffer& inputs) {
   const double driven = kCourseTime * inputs.fastest_until(position.t).v;
-  return std::max(std::clamp(driven, double{kShortest}, double{kLongest}), kLengthOfNoise * position.std.xy);
+  return std::max(std::clamp(driven, double{kShortest}, double{kLongestWay}), kLengthOfNoise * position.std.xy);
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ std::optional<double> CourseFinder::push(const MeasuredPose& position, const Inp
   }
   passed_.push_back({.t = position.t, .measured = {position.x, position.y}, .reckoned = robot});
   const Eigen::Vector2d antenna = sensor_motion(robot, sensor_).vector().head<2>();
-  const double length = known ? length_for(position, inputs) : double{kLongest};
+  const double length = known ? length_for(position, inputs) : double{kLongestWay};
   Together sum;
   Together found;
   for (auto each = passed_.rbegin(); each != passed_.rend() && (sum.count < kFewest || !found.spread(length)); ++each) {
@@ -86,7 +86,7 @@ std::optional<double> CourseFinder::push(const MeasuredPose& position, const Inp
     found = sum.centred();
   }
   const double apart = std::sqrt(found.squares[0] / found.squares[1]);
-  if (!found.spread(kShortest) || !(apart <= kApart) || !(apart * kApart >= 1.0)) {
+  if (!found.spread(kShortest) || !(apart <= kWaysApart) || !(apart * kWaysApart >= 1.0)) {
     return std::nullopt;
   }
   const double yaw = std::atan2(found.across, found.along) + robot.theta - sensor_.theta;

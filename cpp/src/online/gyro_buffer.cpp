@@ -15,15 +15,15 @@
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kStillTime, 1.0);    // [s] of standing still whose mean is a measured bias,
-SLIPWISE_TUNING(kCalm, 0.5);         // [s] after the inputs stopped and before they start
-SLIPWISE_TUNING(kStillStd, 2e-3);    // [rad/s] of that mean
-SLIPWISE_TUNING(kCourseTime, 20.0);  // [s] over which turns of the course measure the bias,
-SLIPWISE_TUNING(kCourseStd, 0.15);   // [rad] such a turn, the change of the side-slip angle included
-SLIPWISE_TUNING(kDrift, 1e-4);       // [rad/s] per root of a second
-SLIPWISE_TUNING(kWalk, 3e-3);        // [rad] per root of a second: noise of the gyro
-SLIPWISE_TUNING(kScale, 5e-3);       // of the turn: the gyro's scale
-SLIPWISE_TUNING(kPiece, 2.5);        // [s] about so long are the pieces of a segment whose turns are learned from
+SLIPWISE_TUNING(kStillTime, 1.0);   // [s] of standing still whose mean is a measured bias,
+SLIPWISE_TUNING(kCalm, 0.5);        // [s] after the inputs stopped and before they start
+SLIPWISE_TUNING(kStillStd, 2e-3);   // [rad/s] of that mean
+SLIPWISE_TUNING(kBiasTime, 20.0);   // [s] over which turns of the course measure the bias,
+SLIPWISE_TUNING(kCourseStd, 0.15);  // [rad] such a turn, the change of the side-slip angle included
+SLIPWISE_TUNING(kDrift, 1e-4);      // [rad/s] per root of a second
+SLIPWISE_TUNING(kWalk, 3e-3);       // [rad] per root of a second: noise of the gyro
+SLIPWISE_TUNING(kScale, 5e-3);      // of the turn: the gyro's scale
+SLIPWISE_TUNING(kPiece, 2.5);       // [s] about so long are the pieces of a segment whose turns are learned from
 
 double squared(double value) { return value * value; }
 
@@ -39,7 +39,7 @@ void GyroBuffer::learn_bias(double measured, double variance) {
 }
 
 void GyroBuffer::see_inputs(double t, const InputBuffer& inputs, double still_speed) {
-  if (!seen_until_ || later(t, *seen_until_ + kCourseTime)) {
+  if (!seen_until_ || later(t, *seen_until_ + kBiasTime)) {
     seen_until_ = t;
     return;
   }
@@ -66,7 +66,7 @@ void GyroBuffer::see_course(const MeasuredPose& position) {
     return;
   }
   const double seconds = position.t - course_->t;
-  if (later(kCourseTime, seconds)) {
+  if (later(kBiasTime, seconds)) {
     return;
   }
   if (const auto turned = integral(samples_, course_->t, position.t)) {

@@ -20,10 +20,10 @@ namespace {
 
 using archive::require;
 
-constexpr double kRounding = 1e-6;   // of the largest variance: by so much a covariance may miss being one
-constexpr double kLongest = 4000.0;  // [s] of a segment: more than the longest prediction
-constexpr std::size_t kAxes = 3;     // of a twist
-constexpr double kLargest = 1e150;   // whose square is a number still
+constexpr double kRounding = 1e-6;          // of the largest variance: by so much a covariance may miss being one
+constexpr double kLongestSegment = 4000.0;  // [s] of a segment: more than the longest prediction
+constexpr std::size_t kAxes = 3;            // of a twist
+constexpr double kLargest = 1e150;          // whose square is a number still
 
 bool possible(double value) { return std::abs(value) < kLargest; }
 
@@ -119,7 +119,7 @@ void LoadedValues::check(Type<SurfaceMemory> /*type*/, const SurfaceMemory& valu
 }
 
 void LoadedValues::check(Type<Segment> /*type*/, const Segment& value) {
-  const auto is_near = [&](double t) { return std::abs(t - value.start) <= kLongest; };
+  const auto is_near = [&](double t) { return std::abs(t - value.start) <= kLongestSegment; };
   require(possible(value.start) && value.end > value.start && is_near(value.end), "a segment has no duration");
   require(are_of_sensors(value.measured) && possible(value.heading) && (!value.initial || possible(*value.initial)) &&
               possible(value.gx) && possible(value.gy),
@@ -154,7 +154,7 @@ void LoadedValues::check(Type<SegmentLinearization> /*type*/, const SegmentLinea
 }
 
 void LoadedValues::check(Type<WheelSegment> /*type*/, const WheelSegment& value) {
-  require(possible(value.start) && value.end > value.start && value.end - value.start <= kLongest &&
+  require(possible(value.start) && value.end > value.start && value.end - value.start <= kLongestSegment &&
               value.known_at >= value.end && possible(value.known_at),
           "a stretch of wheel speeds has no duration");
 }
@@ -162,7 +162,7 @@ void LoadedValues::check(Type<WheelSegment> /*type*/, const WheelSegment& value)
 void LoadedValues::check(Type<WheelMeans> /*type*/, const WheelMeans& value) {
   require(!value.twist.empty() && value.samples.size() == value.twist.size() &&
               value.edges.size() == value.twist.size() + 1 && increases(value.edges) &&
-              value.edges.back() - value.edges.front() <= kLongest,
+              value.edges.back() - value.edges.front() <= kLongestSegment,
           "means of wheel speeds do not fit together");
   require(std::ranges::all_of(value.samples, [](double n) { return n >= 0.0 && possible(n); }) &&
               std::ranges::all_of(value.twist, [](const BodyTwist& twist) { return possible(twist); }),
@@ -209,11 +209,11 @@ void LoadedValues::check(Type<KnotCurve> /*type*/, const KnotCurve& value) {
 }
 
 void LoadedValues::check(Type<StreamSettings> /*type*/, const StreamSettings& value) {
-  const auto is_length = [](double seconds) { return seconds > 0.0 && seconds < kLongest; };
+  const auto is_length = [](double seconds) { return seconds > 0.0 && seconds < kLongestSegment; };
   require(is_length(value.segment_length) && std::ranges::all_of(value.horizons, is_length) &&
-              value.unknown_after >= 0.0 && value.latency >= 0.0 && value.latency < kLongest &&
+              value.unknown_after >= 0.0 && value.latency >= 0.0 && value.latency < kLongestSegment &&
               (!value.stride || is_length(*value.stride)) &&
-              (!value.embargo || (*value.embargo >= 0.0 && *value.embargo < kLongest)),
+              (!value.embargo || (*value.embargo >= 0.0 && *value.embargo < kLongestSegment)),
           "a segment has no length");
 }
 

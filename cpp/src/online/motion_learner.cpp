@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -26,16 +25,15 @@
 namespace slipwise {
 namespace {
 
-constexpr double kLongest = 3600.0;    // [s] horizon
-constexpr double kFastestInput = 1e3;  // [m/s, rad/s]
-constexpr std::size_t kPathPoses = 5;  // of a prediction
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kLongestHorizon = 3600.0;  // [s] horizon
+constexpr double kFastestInput = 1e3;       // [m/s, rad/s]
+constexpr std::size_t kPathPoses = 5;       // of a prediction
 constexpr double kOffsets = 1.5;  // [s] states are kept for longer than streams are late: no clock offset is larger
 
 void check(const std::vector<InputSample>& future, double horizon) {
-  if (!(horizon > 0.0) || horizon > kLongest) {
-    throw std::invalid_argument("the horizon must be positive and at most " + std::to_string(kLongest) + " s, got " +
-                                std::to_string(horizon));
+  if (!(horizon > 0.0) || horizon > kLongestHorizon) {
+    throw std::invalid_argument("the horizon must be positive and at most " + std::to_string(kLongestHorizon) +
+                                " s, got " + std::to_string(horizon));
   }
   double before = -kNever;
   for (const auto& [t, twist] : future) {
@@ -83,7 +81,7 @@ std::vector<SegmentLinearization> pushed_beginnings(const MotionPosterior& motio
 }  // namespace
 
 MotionLearner::MotionLearner(const LearnerSettings& settings)
-    : stream_(settings.stream), learner_(settings), localizer_(pose_filter_settings(settings)), before_run_(-kNever) {}
+    : stream_(settings.stream), learner_(settings), localizer_(pose_filter_settings(settings)) {}
 MotionLearner::MotionLearner(const MotionLearner&) = default;
 MotionLearner::MotionLearner(MotionLearner&&) noexcept = default;
 MotionLearner& MotionLearner::operator=(const MotionLearner&) = default;

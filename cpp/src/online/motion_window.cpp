@@ -13,14 +13,14 @@ namespace slipwise {
 namespace {
 
 constexpr double kLength = 1.5;             // [s]
-constexpr double kLongest = 4.0;            // [s] poses may be missing for a while
-constexpr double kKnownPart = 0.9;          // of a window's time, inputs must be known
+constexpr double kLongestWindow = 4.0;      // [s] poses may be missing for a while
+constexpr double kInputsKnown = 0.9;        // of a window's time, inputs must be known
 constexpr double kChord = 0.1;              // [m] from one position to the next that tells a course
 constexpr std::size_t kMostWindows = 4000;  // a hundred minutes
 constexpr double kWholeTurn = 2.0 * std::numbers::pi;
-constexpr double kDriven = 0.05;   // [m] by the inputs; slower ones may be inside a dead band
-constexpr double kTurnArm = 0.3;   // [m] at which a turn counts as distance
-constexpr double kRecent = 120.0;  // [s] of driving
+constexpr double kDriven = 0.05;          // [m] by the inputs; slower ones may be inside a dead band
+constexpr double kTurnArm = 0.3;          // [m] at which a turn counts as distance
+constexpr double kRecentDriving = 120.0;  // [s] of driving
 
 double motion_of(const HeldMotion& held) {
   return std::hypot(held.forward, held.sideways) + kTurnArm * std::abs(held.rotation);
@@ -89,8 +89,8 @@ void WindowCutter::close(const NumberedRun& run, const Seen& last, const InputBu
   const double duration = last.t - first.t;
   const HeldMotion commanded = commands.held_motion(first.t, last.t);
   const HeldMotion rolled = wheels.held_motion(first.t, last.t);
-  const bool known = std::max(commanded.known, rolled.known) > kKnownPart * duration + kSameStamp;
-  if (duration >= kLongest - kSameStamp || !known) {
+  const bool known = std::max(commanded.known, rolled.known) > kInputsKnown * duration + kSameStamp;
+  if (duration >= kLongestWindow - kSameStamp || !known) {
     return;
   }
   windows_.push_back({.run = run.number,
@@ -123,7 +123,7 @@ void WindowCutter::keep_recent(const MotionWindow& window) {
   for (const MotionWindow& each : recent_) {
     seconds += each.duration;
   }
-  while (seconds - recent_.front().duration >= kRecent) {
+  while (seconds - recent_.front().duration >= kRecentDriving) {
     seconds -= recent_.front().duration;
     recent_.pop_front();
   }

@@ -17,8 +17,8 @@ constexpr long kFramesApart = 1'000'000'000'000;  // numbers of frames before a 
 
 std::optional<Reason> PoseSource::take(const MeasuredPose& pose) {
   const std::array numbers{pose.x, pose.y, pose.yaw, pose.std.xy, pose.std.yaw};
-  StampGate gate;
-  if (const auto wrong = gate.check(pose.t, numbers)) {
+  StampGate stamps;
+  if (const auto wrong = stamps.check(pose.t, numbers)) {
     return wrong;
   }
   if (!later(pose.t, used)) {

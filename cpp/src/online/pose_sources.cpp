@@ -3,7 +3,6 @@
 #include "slipwise/online/pose_sources.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "slipwise/linear/same_stamp.hpp"
@@ -14,7 +13,6 @@ namespace slipwise {
 namespace {
 
 SLIPWISE_TUNING(kStarts, 10.0);  // segments begin this many times within the length of one, so that gaps are filled
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Stretches without use are counted for the first source alone: those of others overlap.
 void emit(const PoseSource& source, const SegmentCut& cut, double known_at, const MeasuredDrive& drive,

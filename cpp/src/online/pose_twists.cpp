@@ -11,9 +11,9 @@
 namespace slipwise {
 namespace {
 
-constexpr double kInterval = 0.2;  // [s] between the poses of a twist; shorter, noise of poses hides the motion
-constexpr double kLongest = 0.3;   // [s]; over longer ones, a ramp that they blur passes for one of the actuator
-constexpr double kStretch = 1.0;   // [s] from which on a stretch is complete
+constexpr double kMeanTime = 0.2;         // [s] between the poses of a twist; shorter, noise of poses hides the motion
+constexpr double kLongestMeanTime = 0.3;  // [s]; over longer ones, a ramp that they blur passes for one of the actuator
+constexpr double kStretch = 1.0;          // [s] from which on a stretch is complete
 
 /// A robot that stands still although it is commanded to move tells of a dead band.
 SegmentRules with_still(SegmentRules rules) {
@@ -24,7 +24,7 @@ SegmentRules with_still(SegmentRules rules) {
 }  // namespace
 
 PoseTwists::PoseTwists(const SegmentRules& rules, const Pose2& sensor)
-    : sensor_(sensor), cutter_(kInterval, with_still(rules), false) {}
+    : sensor_(sensor), cutter_(kMeanTime, with_still(rules), false) {}
 
 std::vector<TwistStretch> PoseTwists::push(const TimedPose& pose, const InputBuffer& commands) {
   return joined(cutter_.push(pose, commands));
@@ -45,7 +45,7 @@ std::vector<TwistStretch> PoseTwists::joined(const std::vector<SegmentCut>& cuts
     if (stretch_ && !same_stamp(cut.first.t, stretch_->end)) {
       close(out);
     }
-    if (cut.rejected || later(seconds, kLongest)) {
+    if (cut.rejected || later(seconds, kLongestMeanTime)) {
       close(out);
       continue;
     }

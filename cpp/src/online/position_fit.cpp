@@ -24,7 +24,7 @@ SLIPWISE_TUNING(kUsual, 0.01);       // [m] noise of positions before residuals 
 SLIPWISE_TUNING(kSpread, 0.07);      // [m] a way that spreads less has no course to speak of,
 constexpr double kOfNoise = 2.0;     // and no more has one that spreads by less than so many stated standard deviations
 constexpr double kUsualCount = 4.0;  // residuals that this is worth
-constexpr double kApart = 3.0;       // a way and that by the inputs may differ by this factor
+constexpr double kWaysDiffer = 3.0;  // a way and that by the inputs may differ by this factor
 constexpr std::size_t kFewest = 3;   // positions
 constexpr int kIterations = 10;
 constexpr int kHalvings = 5;
@@ -227,7 +227,7 @@ bool moves(const std::vector<MeasuredPose>& positions, const ManyPositions& meas
   }
   const double is = std::sqrt(measured.colwise().squaredNorm().dot(weights) / weights.sum());
   const double expected = std::sqrt(reckoned.weighted_square(weights) / weights.sum());
-  const bool same = is <= kApart * expected && expected <= kApart * is;
+  const bool same = is <= kWaysDiffer * expected && expected <= kWaysDiffer * is;
   return same && std::min(is, expected) >= std::max(double{kSpread}, kOfNoise * stated);
 }
 

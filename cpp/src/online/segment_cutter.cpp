@@ -14,14 +14,14 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kRecent = 64;       // intervals between poses that tell the median one
-SLIPWISE_TUNING(kLeastFraction, 0.25);    // of the length asked for; a frame shorter than this is no segment
-SLIPWISE_TUNING(kLeastOfPositions, 0.5);  // of it; so long is a segment between positions at least,
-SLIPWISE_TUNING(kTurnKnown, 0.01);        // [rad] where they tell its turn so well, which is little beside its slip
-SLIPWISE_TUNING(kStillPart, 0.1);         // of the run's fastest so far; what is slower stands, if it is slow at all
-SLIPWISE_TUNING(kStillAtMost, 2e-3);      // [m/s, rad/s] and slower, every robot stands
-SLIPWISE_TUNING(kToAndFro, 0.5);          // of a way or turn; what gets less far is noise of wheels that stand
-SLIPWISE_TUNING(kLasting, 0.1);           // [m] by so much positions are off for seconds, however little they scatter
+constexpr std::size_t kRecentIntervals = 64;  // intervals between poses that tell the median one
+SLIPWISE_TUNING(kLeastFraction, 0.25);        // of the length asked for; a frame shorter than this is no segment
+SLIPWISE_TUNING(kLeastOfPositions, 0.5);      // of it; so long is a segment between positions at least,
+SLIPWISE_TUNING(kTurnKnown, 0.01);            // [rad] where they tell its turn so well, which is little beside its slip
+SLIPWISE_TUNING(kStillPart, 0.1);     // of the run's fastest so far; what is slower stands, if it is slow at all
+SLIPWISE_TUNING(kStillAtMost, 2e-3);  // [m/s, rad/s] and slower, every robot stands
+SLIPWISE_TUNING(kToAndFro, 0.5);      // of a way or turn; what gets less far is noise of wheels that stand
+SLIPWISE_TUNING(kLasting, 0.1);       // [m] by so much positions are off for seconds, however little they scatter
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -50,11 +50,11 @@ bool stands(const InputBuffer& inputs, double from, double to, double still_spee
 
 void PoseInterval::add(double seconds) {
   recent_.push_back(seconds);
-  if (recent_.size() > kRecent) {
+  if (recent_.size() > kRecentIntervals) {
     recent_.pop_front();
   }
   ++count_;
-  if (count_ < kRecent || count_ % kRecent == 0) {
+  if (count_ < kRecentIntervals || count_ % kRecentIntervals == 0) {
     median_ = median_of({recent_.begin(), recent_.end()});
   }
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <variant>
@@ -26,7 +25,6 @@ constexpr double kPieces = 12.0;   // that it takes to learn a segment, or so
 constexpr double kMostPieces = 8;  // that a push learns of what waits, unless they are due
 constexpr double kDone = 0.9;      // [s] after which it is learned, if pushes come until kReady or not
 constexpr int kSlices = 2;         // of refits that a push does beside what waits: some 100 us each
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 DisturbanceFilter disturbance_of(const LearnerSettings& settings) {
   return settings.learn_disturbance ? DisturbanceFilter(settings.disturbance) : DisturbanceFilter(DisturbanceModel{});

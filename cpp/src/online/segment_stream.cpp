@@ -23,7 +23,6 @@ constexpr long kFramesApart = 1'000'000'000'000;  // numbers of frames before a 
 constexpr double kHeadings = 0.1;                 // [s] between headings of a gyro
 constexpr double kMissing = 0.25;                 // [s] between its samples, over which the robot may turn otherwise
 constexpr double kSpare = 10.0;                   // [s] that inputs are kept for longer than a segment may need
-constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Stream stream) { return static_cast<std::size_t>(stream); }
 
@@ -35,11 +34,8 @@ double allowed(double std) { return std >= 0.0 ? std : std::numeric_limits<doubl
 SegmentStream::SegmentStream(const StreamSettings& settings)
     : drive_(settings),
       keep_(kLookBack + kSpare + settings.latency),
-      newest_(-kNever),
-      range_{kNever, -kNever, kNever, -kNever},
       rates_(settings.sensor),
       held_(settings.unknown_after),
-      now_(-kNever),
       cutters_(settings),
       courses_(settings.sensor),
       others_(settings) {

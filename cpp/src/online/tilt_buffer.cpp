@@ -12,12 +12,12 @@
 namespace slipwise {
 namespace {
 
-constexpr double kApart = 0.02;  // [s]; a robot's tilt changes more slowly
+constexpr double kTiltsApart = 0.02;  // [s]; a robot's tilt changes more slowly
 
 }  // namespace
 
 void TiltBuffer::push(const Tilt& tilt) {
-  if (tilts_.empty() || !later(tilts_.back().t + kApart, tilt.t)) {
+  if (tilts_.empty() || !later(tilts_.back().t + kTiltsApart, tilt.t)) {
     tilts_.push_back(tilt);
   }
 }

@@ -11,11 +11,11 @@
 namespace slipwise {
 namespace {
 
-constexpr double kLength = 1.0;      // [s] between the poses
-constexpr double kLongest = 1.6;     // [s]
-constexpr double kApart = 0.3;       // [s] the clocks of poses and wheels are tried apart by at most this
-constexpr double kMoving = 0.05;     // [m] by the wheels
-constexpr double kInterval = 0.004;  // [s] between points of the path at least
+constexpr double kLength = 1.0;         // [s] between the poses
+constexpr double kLongestProbe = 1.6;   // [s]
+constexpr double kClocksTried = 0.3;    // [s] the clocks of poses and wheels are tried apart by at most this
+constexpr double kMoving = 0.05;        // [m] by the wheels
+constexpr double kPointsApart = 0.004;  // [s] between points of the path at least
 constexpr std::size_t kMostProbes = 128;
 constexpr double kRecentApart = 2.0;  // [s] from one of the last pairs to the next
 constexpr std::size_t kMostRecent = 60;
@@ -27,7 +27,7 @@ std::vector<StampedPose> path_of(double start, double end, const InputBuffer& wh
   double t = std::max(start, wheels.first());
   path.push_back({.t = t, .x = 0.0, .y = 0.0, .yaw = 0.0});
   for (auto next = wheels.first_after(t); next && !later(*next, end); next = wheels.first_after(*next)) {
-    if (!later(t + kInterval, *next)) {
+    if (!later(t + kPointsApart, *next)) {
       pose = compose(pose, wheels.reckoned(t, *next));
       t = *next;
       path.push_back({.t = t, .x = pose.x, .y = pose.y, .yaw = pose.theta});
@@ -55,7 +55,7 @@ void ProbeCutter::push(const MeasuredPose& pose, const InputBuffer& wheels) {
   if (wheels.empty() || later(wheels.first(), pose.t) || pose.position) {
     return;
   }
-  while (!waiting_.empty() && later(pose.t, waiting_.front().probe.last.t + kApart)) {
+  while (!waiting_.empty() && later(pose.t, waiting_.front().probe.last.t + kClocksTried)) {
     keep(waiting_.front(), wheels);
     waiting_.pop_front();
   }
@@ -67,7 +67,7 @@ void ProbeCutter::push(const MeasuredPose& pose, const InputBuffer& wheels) {
   for (; !open_.empty() && !later(open_.front().t + kLength, seen.t); open_.pop_front()) {
     const StampedPose& first = open_.front();
     const HeldMotion rolled = wheels.held_motion(first.t, seen.t);
-    if (seen.t - first.t >= kLongest - kSameStamp || std::hypot(rolled.forward, rolled.sideways) <= kMoving) {
+    if (seen.t - first.t >= kLongestProbe - kSameStamp || std::hypot(rolled.forward, rolled.sideways) <= kMoving) {
       continue;
     }
     const bool spread = ++passed_ >= every_;
@@ -84,7 +84,7 @@ void ProbeCutter::push(const MeasuredPose& pose, const InputBuffer& wheels) {
 /// Where there are too many, every other one goes, and fewer are kept from then on.
 void ProbeCutter::keep(Waiting waiting, const InputBuffer& wheels) {
   WheelProbe& probe = waiting.probe;
-  probe.path = path_of(probe.first.t - kApart, probe.last.t + kApart, wheels);
+  probe.path = path_of(probe.first.t - kClocksTried, probe.last.t + kClocksTried, wheels);
   if (waiting.recent) {
     recent_.push_back(probe);
     if (recent_.size() > kMostRecent) {

@@ -25,9 +25,9 @@ CurvatureWeights curvature_weights(double fraction) {
     for (int j = 0; j < degree; ++j) {
       const double right = knot(span + j + 1);
       const double left = knot(span + 1 - degree + j);
-      const double fraction = weight[static_cast<std::size_t>(j)] / (right - left);
-      weight[static_cast<std::size_t>(j)] = carried + (right - at) * fraction;
-      carried = (at - left) * fraction;
+      const double part = weight[static_cast<std::size_t>(j)] / (right - left);
+      weight[static_cast<std::size_t>(j)] = carried + (right - at) * part;
+      carried = (at - left) * part;
     }
     weight[static_cast<std::size_t>(degree)] = carried;
   }

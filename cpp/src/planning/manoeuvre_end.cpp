@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "slipwise/actuator/axis_stepper.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/kinematics.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/segment/ground_step.hpp"
 #include "slipwise/segment/path_step.hpp"
 
@@ -22,7 +22,6 @@ namespace {
 
 constexpr double kNoStamp = 0.0;                                      // [s]; a plane or a map is the same at any time
 using StepJacobian = Eigen::Matrix<double, 4, kManoeuvreParameters>;  // duration, forward, left, turn
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kLongestStep = ActuatorSpan{.start = 0.0, .end = 0.0}.longest_step;  // [s]
 
 /// Speeds move with the manoeuvre's length alone, the yaw rate with all parameters.

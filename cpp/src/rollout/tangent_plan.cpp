@@ -13,9 +13,7 @@ namespace {
 constexpr double kOffBoundary = 1e-6;  // of a piece of the period
 constexpr double kNoPivot = 1e-12;     // of a variance: what is left of it is rounding
 
-/// Where a delay stands in ActuatorModel, of v and of omega.
-constexpr std::array<Eigen::Index, 2> kDelays{2, 3};
-constexpr Eigen::Index kClockOffset = 4;
+constexpr std::array kDelays{kDelayV, kDelayOmega};
 
 /// Moves what makes commands act, as far as it is not known, so that they neither act at a period's boundary nor both
 /// at once: where two parts meet, one of them has no length and no derivative.

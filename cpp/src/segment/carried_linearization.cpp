@@ -10,8 +10,6 @@
 namespace slipwise {
 namespace {
 
-constexpr Eigen::Index kDelay = 2;  // places among the parameters of an actuator: two delays, and the clock offset
-constexpr Eigen::Index kClockOffset = 4;
 SLIPWISE_TUNING(kStraight, 0.1);        // of the noise's standard deviation: as good as straight
 SLIPWISE_TUNING(kStraightShift, 0.05);  // [ln s], [s]; over so little of a delay it bends by 1 mm at 1 m/s^2
 
@@ -20,7 +18,7 @@ bool shifted(const MotionModel& model, const Eigen::ArrayXd& drive) {
   const auto& places = model.actuator_places();
   for (Eigen::Index i = 0; i < drive.size(); ++i) {
     const auto place = places[static_cast<std::size_t>(i)];
-    if (place >= kDelay && place <= kClockOffset && !(drive[i] < kStraightShift)) {
+    if (place >= kDelayV && place <= kClockOffset && !(drive[i] < kStraightShift)) {
       return true;
     }
   }

@@ -16,8 +16,6 @@
 namespace slipwise {
 namespace {
 
-constexpr Eigen::Index kClockOffset = 4;  // its place among the parameters of an actuator
-
 /// One column per learned parameter of the actuator.
 using ActuatorColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kActuatorParameters>;
 using LearnedColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kActuatorParameters>;

@@ -9,9 +9,9 @@
 namespace slipwise {
 namespace {
 
-constexpr double kLeast = 0.01;     // of an expert's probability: no expert may rule a surface out alone
-constexpr double kCertain = 1e-6;   // probabilities beyond this have no log odds of their own
-constexpr double kFarthest = 50.0;  // log odds
+constexpr double kLeastShare = 0.01;  // of an expert's probability: no expert may rule a surface out alone
+constexpr double kCertain = 1e-6;     // probabilities beyond this have no log odds of their own
+constexpr double kFarthest = 50.0;    // log odds
 
 }  // namespace
 
@@ -22,10 +22,10 @@ Eigen::MatrixXd ExpertPool::pooled(const Eigen::Ref<const Eigen::MatrixXd>& by_v
   }
   Eigen::ArrayXXd logs = Eigen::ArrayXXd::Zero(by_vibration.rows(), by_vibration.cols());
   if (vibration != 0.0) {
-    logs += vibration * (by_vibration.array() + kLeast).log();
+    logs += vibration * (by_vibration.array() + kLeastShare).log();
   }
   if (current != 0.0) {
-    logs += current * (by_current.array() + kLeast).log();
+    logs += current * (by_current.array() + kLeastShare).log();
   }
   return softmax_of_rows(logs.matrix());
 }

@@ -13,9 +13,9 @@
 namespace slipwise {
 namespace {
 
-constexpr double kSharpness = 4.0;    // of the softmax over indicators, before calibration
-constexpr Eigen::Index kNearest = 5;  // windows of training whose mean distance says how new a window is
-constexpr double kLeast = 1e-6;       // of that distance, so that it has a logarithm
+constexpr double kSharpness = 4.0;       // of the softmax over indicators, before calibration
+constexpr Eigen::Index kNearest = 5;     // windows of training whose mean distance says how new a window is
+constexpr double kLeastDistance = 1e-6;  // of that distance, so that it has a logarithm
 
 void check_columns(const Eigen::Ref<const Eigen::MatrixXd>& features, Eigen::Index expected) {
   if (features.cols() != expected) {
@@ -88,7 +88,7 @@ Eigen::VectorXd KernelExpert::newness(const Eigen::Ref<const Eigen::MatrixXd>& f
   for (Eigen::Index i = 0; i < all.rows(); ++i) {
     Eigen::VectorXd row = all.row(i);
     std::nth_element(row.begin(), row.begin() + (kNearest - 1), row.end());
-    found[i] = std::log(row.head<kNearest>().mean() * width_ + kLeast);
+    found[i] = std::log(row.head<kNearest>().mean() * width_ + kLeastDistance);
   }
   return found;
 }

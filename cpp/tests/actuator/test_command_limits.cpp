@@ -15,9 +15,9 @@
 namespace slipwise {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-InputHistory history(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& omega) {
+InputHistory commands_at(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& omega) {
   const std::vector<double> vy(t.size(), 0.25);
   return {t, v, vy, omega};
 }
@@ -33,7 +33,7 @@ double distance(const InputHistory& inputs, double until) {
 }
 
 TEST_CASE("without limits the commands pass as they are") {
-  const InputHistory commands = history({0.0, 1.0}, {1.0, -2.0}, {0.5, 0.0});
+  const InputHistory commands = commands_at({0.0, 1.0}, {1.0, -2.0}, {0.5, 0.0});
   const InputHistory limited = limited_inputs(commands, {});
   REQUIRE(limited.size() == commands.size());
   CHECK(limited.sample(1) == commands.sample(1));
@@ -42,7 +42,7 @@ TEST_CASE("without limits the commands pass as they are") {
 TEST_CASE("a dead-band blocks what is slower and passes the rest whole; a saturation cuts; both signs alike") {
   const CommandLimits limits{.speed = {.dead_band = 0.2, .saturation = 1.0}};
   const InputHistory limited =
-      limited_inputs(history({0, 1, 2, 3, 4}, {0.1, 0.3, 5.0, -0.19, -7.0}, {1, 1, 1, 1, 1}), limits);
+      limited_inputs(commands_at({0, 1, 2, 3, 4}, {0.1, 0.3, 5.0, -0.19, -7.0}, {1, 1, 1, 1, 1}), limits);
   CHECK(limited.at(0.5).v == 0.0);
   CHECK(limited.at(1.5).v == 0.3);
   CHECK(limited.at(2.5).v == 1.0);
@@ -54,7 +54,7 @@ TEST_CASE("a dead-band blocks what is slower and passes the rest whole; a satura
 
 TEST_CASE("ramps keep the distance exactly, through zero with braking first") {
   const CommandLimits limits{.speed = {.slew_rate_up = 2.0, .slew_rate_down = 4.0}};
-  const InputHistory limited = limited_inputs(history({0.0, 3.0}, {1.0, -1.0}, {0.0, 0.0}), limits);
+  const InputHistory limited = limited_inputs(commands_at({0.0, 3.0}, {1.0, -1.0}, {0.0, 0.0}), limits);
   CHECK(distance(limited, 3.0) == doctest::Approx(3.0 - 0.25));  // 0.5 s up to 1 m/s
   // 0.25 s down to zero, 0.5 s up to -1 m/s.
   CHECK(distance(limited, 5.0) == doctest::Approx(2.75 + 0.125 - 0.25 - 1.25));
@@ -66,7 +66,7 @@ TEST_CASE("a ramp cut short by a command errs in distance by no more than stated
   const double rate = 2.0;
   const double piece = 0.02;
   const CommandLimits limits{.speed = {.slew_rate_up = rate, .slew_rate_down = rate}};
-  const InputHistory limited = limited_inputs(history({0.0, 0.33}, {1.0, 0.0}, {0.0, 0.0}), limits, piece);
+  const InputHistory limited = limited_inputs(commands_at({0.0, 0.33}, {1.0, 0.0}, {0.0, 0.0}), limits, piece);
   CHECK(std::abs(distance(limited, 0.33) - 0.5 * rate * 0.33 * 0.33) <= rate * piece * piece / 8.0 + 1e-12);
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("commands at equal intervals are cut exactly, from the second on") {
     t.push_back(0.05 * k);
     v.push_back(k < 6 ? 5.0 : -5.0);
   }
-  const InputHistory limited = limited_inputs(history(t, v, omega), limits);
+  const InputHistory limited = limited_inputs(commands_at(t, v, omega), limits);
   const double reached = distance(limited, 0.55) - distance(limited, 0.05);
   CHECK(reached == doctest::Approx(0.3 * 0.3 - 0.05 * 0.05 + 0.3 * 0.3 - 0.05 * 0.05).epsilon(1e-12));
 }
@@ -96,7 +96,7 @@ TEST_CASE("a drive that was commanded something for long gives what its limits l
 
 TEST_CASE("sides are limited each for itself, behind gains") {
   const CommandLimits limits{.side = {.saturation = 1.0}, .wheel_separation = 0.5, .gain_v = 2.0, .gain_omega = 0.5};
-  const InputHistory limited = limited_inputs(history({0.0}, {0.4}, {4.0}), limits);
+  const InputHistory limited = limited_inputs(commands_at({0.0}, {0.4}, {4.0}), limits);
   // Asked: 0.8 -+ 0.5: left 0.3, right 1.3, cut to 1.
   CHECK(limited.at(0.0).v == doctest::Approx(0.65));
   CHECK(limited.at(0.0).omega == doctest::Approx(1.4));
@@ -107,8 +107,8 @@ TEST_CASE("what comes out until some moment does not depend on later commands") 
                              .side = {.saturation = 0.8, .slew_rate_up = 0.9, .slew_rate_down = 1.1},
                              .wheel_separation = 0.6};
   const InputHistory whole =
-      limited_inputs(history({0, 0.3, 0.71, 1.4}, {0.5, -0.8, 1.5, 0.0}, {1, -1, 0.3, 0}), limits);
-  const InputHistory early = limited_inputs(history({0, 0.3}, {0.5, -0.8}, {1, -1}), limits);
+      limited_inputs(commands_at({0, 0.3, 0.71, 1.4}, {0.5, -0.8, 1.5, 0.0}, {1, -1, 0.3, 0}), limits);
+  const InputHistory early = limited_inputs(commands_at({0, 0.3}, {0.5, -0.8}, {1, -1}), limits);
   for (double t = 0.0; t < 0.71; t += 0.003) {
     CHECK(whole.at(t) == early.at(t));
   }
@@ -140,7 +140,7 @@ TEST_CASE("behind a lag the rates are those of the drive itself, whose lag is th
 }
 
 TEST_CASE("limits that make no sense are refused with the axis and what to give") {
-  const InputHistory commands = history({0.0}, {1.0}, {0.0});
+  const InputHistory commands = commands_at({0.0}, {1.0}, {0.0});
   CHECK_THROWS_WITH_AS(limited_inputs(commands, {.yaw_rate = {.saturation = -1.0}}),
                        doctest::Contains("yaw rate axis's saturation"), std::invalid_argument);
   CHECK_THROWS_AS(limited_inputs(commands, {.speed = {.dead_band = -0.1}}), std::invalid_argument);
@@ -148,11 +148,11 @@ TEST_CASE("limits that make no sense are refused with the axis and what to give"
   CHECK_THROWS_AS(limited_inputs(commands, {.side = {.slew_rate_down = std::nan("")}}), std::invalid_argument);
   CHECK_THROWS_AS(limited_inputs(commands, {.side = {.saturation = 1.0}, .wheel_separation = 0.0}),
                   std::invalid_argument);
-  CHECK_THROWS_AS(limited_inputs(commands, {.speed = {.dead_band = kNone}}), std::invalid_argument);
+  CHECK_THROWS_AS(limited_inputs(commands, {.speed = {.dead_band = kNoLimit}}), std::invalid_argument);
 }
 
 TEST_CASE("the actuator's output is that of its drive steps") {
-  const InputHistory inputs = history({0.0, 0.5, 1.1}, {1.0, -0.5, 0.7}, {0.2, 0.9, -0.4});
+  const InputHistory inputs = commands_at({0.0, 0.5, 1.1}, {1.0, -0.5, 0.7}, {0.2, 0.9, -0.4});
   const ActuatorModel actuator{
       .time_constant_v = 0.3, .time_constant_omega = 0.2, .delay_v = 0.13, .delay_omega = 0.07, .gain_v = 0.9};
   const std::vector<double> times{0.0, 2.0, 2.0005};

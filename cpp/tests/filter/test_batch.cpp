@@ -15,17 +15,11 @@
 namespace slipwise {
 namespace {
 
-const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.005};
-
-Estimate wide_prior(const MotionModel& model, double sigma = 0.2) {
-  return {Eigen::VectorXd::Zero(model.size()), sigma * sigma * Eigen::MatrixXd::Identity(model.size(), model.size())};
-}
-
 std::vector<BatchDatum> data_of(const MotionModel& model, const tests::SimulatedDrive& drive) {
   std::vector<BatchDatum> data;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model.size());
   for (const Segment& segment : drive.segments) {
-    data.push_back({drive.inputs, segment, tests::window_noise(model, zero, drive.inputs, segment, kNoise)});
+    data.push_back({drive.inputs, segment, tests::window_noise(model, zero, drive.inputs, segment, tests::kNoise)});
   }
   return data;
 }
@@ -65,8 +59,8 @@ TEST_CASE("the batch fit recovers slip and clock offset within three sigma") {
   const MotionModel model(named_basis("odd-even-10"), {.clock_offset = true});
   Eigen::VectorXd truth(11);
   truth << tests::sample_slip(model.basis(), 61, 0.08), -0.05;
-  const auto drive = tests::simulate_drive(model, truth, {.seed = 62, .windows = 60, .noise = kNoise});
-  const BatchFit fit = batch_fit(model, wide_prior(model), data_of(model, drive));
+  const auto drive = tests::simulate_drive(model, truth, {.seed = 62, .windows = 60, .noise = tests::kNoise});
+  const BatchFit fit = batch_fit(model, tests::wide_prior(model), data_of(model, drive));
   CHECK(fit.status == Status::Converged);
   CHECK(fit.iterations < 15);
   CHECK(Cholesky(fit.estimate.covariance).positive_definite());
@@ -78,11 +72,11 @@ TEST_CASE("the batch fit recovers slip and clock offset within three sigma") {
 
 TEST_CASE("on a linear problem the filter and the batch fit agree") {
   const LinearDrive drive(Eigen::Matrix3d::Zero());
-  Estimate filtered = wide_prior(drive.model);
+  Estimate filtered = tests::wide_prior(drive.model);
   for (const BatchDatum& datum : drive.data) {
     filtered = iekf_update(drive.model, filtered, drive.inputs, datum.segment, datum.noise).estimate;
   }
-  const BatchFit fit = batch_fit(drive.model, wide_prior(drive.model), drive.data, {.tolerance = 1e-14});
+  const BatchFit fit = batch_fit(drive.model, tests::wide_prior(drive.model), drive.data, {.tolerance = 1e-14});
   CHECK((fit.estimate.mean - filtered.mean).norm() < 1e-7);
   CHECK((fit.estimate.covariance - filtered.covariance).norm() < 1e-10);
 }
@@ -91,7 +85,7 @@ TEST_CASE("errors that neighbours fraction are weighted as generalised least squ
   Eigen::Matrix3d shared;
   shared << -0.004, 0.001, 0.0, 0.0, -0.003, 0.002, 0.001, 0.0, -0.004;
   const LinearDrive drive(shared);
-  const Estimate prior = wide_prior(drive.model);
+  const Estimate prior = tests::wide_prior(drive.model);
   const auto n = std::ssize(drive.data);
   Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   Eigen::MatrixXd by_parameter(3 * n, drive.model.size());
@@ -120,45 +114,49 @@ TEST_CASE("errors that neighbours fraction are weighted as generalised least squ
 
 TEST_CASE("a fit from near its end takes fewer steps to the same place") {
   const LinearDrive drive(Eigen::Matrix3d::Zero());
-  const BatchFit fit = batch_fit(drive.model, wide_prior(drive.model), drive.data);
-  const BatchFit again = batch_fit(drive.model, wide_prior(drive.model), drive.data, {.start = fit.estimate.mean});
+  const BatchFit fit = batch_fit(drive.model, tests::wide_prior(drive.model), drive.data);
+  const BatchFit again =
+      batch_fit(drive.model, tests::wide_prior(drive.model), drive.data, {.start = fit.estimate.mean});
   CHECK(again.iterations < fit.iterations);
   CHECK((again.estimate.mean - fit.estimate.mean).norm() < 1e-6);
 }
 
 TEST_CASE("errors that share more than they have are refused") {
   const LinearDrive drive(0.02 * Eigen::Matrix3d::Identity());
-  CHECK_THROWS_WITH_AS(batch_fit(drive.model, wide_prior(drive.model), drive.data),
+  CHECK_THROWS_WITH_AS(batch_fit(drive.model, tests::wide_prior(drive.model), drive.data),
                        doctest::Contains("segment 1 shares more noise"), std::invalid_argument);
-  CHECK_THROWS_AS(batch_fit(drive.model, wide_prior(drive.model), drive.data, {.start = Eigen::VectorXd::Zero(2)}),
-                  std::invalid_argument);
+  CHECK_THROWS_AS(
+      batch_fit(drive.model, tests::wide_prior(drive.model), drive.data, {.start = Eigen::VectorXd::Zero(2)}),
+      std::invalid_argument);
 }
 
 TEST_CASE("one pose jump hardly moves a robust fit") {
   const MotionModel model(named_basis("edd-2"), {});
   const Eigen::Vector2d truth(-0.1, -0.2);
-  auto drive = tests::simulate_drive(model, truth, {.seed = 63, .windows = 40, .noise = kNoise});
+  auto drive = tests::simulate_drive(model, truth, {.seed = 63, .windows = 40, .noise = tests::kNoise});
   drive.segments[7].measured.front().z[0] += 3.0;
   const auto data = data_of(model, drive);
-  const double robust = (batch_fit(model, wide_prior(model), data).estimate.mean - truth).norm();
-  const double trusting = (batch_fit(model, wide_prior(model), data, {.huber = 1e9}).estimate.mean - truth).norm();
+  const double robust = (batch_fit(model, tests::wide_prior(model), data).estimate.mean - truth).norm();
+  const double trusting =
+      (batch_fit(model, tests::wide_prior(model), data, {.huber = 1e9}).estimate.mean - truth).norm();
   CHECK(robust < 0.01);
   CHECK(trusting > 3.0 * robust);
 }
 
 TEST_CASE("too few iterations are reported") {
   const MotionModel model(named_basis("odd-even-10"), {});
-  const auto drive = tests::simulate_drive(model, tests::sample_slip(model.basis(), 64), {.seed = 65, .noise = kNoise});
-  const BatchFit fit = batch_fit(model, wide_prior(model), data_of(model, drive), {.iterations = 1});
+  const auto drive =
+      tests::simulate_drive(model, tests::sample_slip(model.basis(), 64), {.seed = 65, .noise = tests::kNoise});
+  const BatchFit fit = batch_fit(model, tests::wide_prior(model), data_of(model, drive), {.iterations = 1});
   CHECK(fit.status == Status::NotConverged);
   CHECK(advice(fit.status).find("did not settle") != std::string_view::npos);
 }
 
 TEST_CASE("data that do not fit are refused with what was expected") {
   const MotionModel model(named_basis("edd-2"), {});
-  const auto drive = tests::simulate_drive(model, Eigen::Vector2d::Zero(), {.windows = 2, .noise = kNoise});
+  const auto drive = tests::simulate_drive(model, Eigen::Vector2d::Zero(), {.windows = 2, .noise = tests::kNoise});
   auto data = data_of(model, drive);
-  const Estimate prior = wide_prior(model);
+  const Estimate prior = tests::wide_prior(model);
   CHECK_THROWS_WITH_AS(batch_fit(model, prior, {}), doctest::Contains("at least one segment"), std::invalid_argument);
   CHECK_THROWS_WITH_AS(batch_fit(model, {Eigen::VectorXd::Zero(3), prior.covariance}, data),
                        doctest::Contains("takes 2 parameters, got 3"), std::invalid_argument);

@@ -18,8 +18,8 @@ namespace slipwise {
 namespace {
 
 const BodyForceSettings kLaw{.time_constant = 120.0, .std = 0.03, .turn_std = 0.03};
-const ReferenceSpeeds kSpeeds{.v = 1.2, .omega = 0.7};
-const MotionNoise kNoise{.psd_time = {2e-4, 2e-4, 4e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.005};
+const ReferenceSpeeds kForceSpeeds{.v = 1.2, .omega = 0.7};
+const MotionNoise kForceNoise{.psd_time = {2e-4, 2e-4, 4e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.005};
 
 TEST_CASE("a force fades into its prior, slip stays") {
   const Basis basis = with_force(named_basis("edd-2"), ForceFrame::Body);
@@ -59,7 +59,7 @@ InputHistory held_inputs(std::mt19937_64& random, double length, bool backwards)
   return {t, v, vy, omega};
 }
 
-struct Drive {
+struct ForceDrive {
   bool backwards = true;
   double force = 1.0;        ///< of the law's standard deviation
   double correlation = 0.0;  ///< of slip noise from one segment to the next
@@ -83,7 +83,7 @@ Pose2 pushed(const SegmentPath& path, const Eigen::Vector3d& draw) {
     Eigen::Vector3d tangent = path.tangents[k];
     for (Eigen::Index c = 0; c < 3; ++c) {
       tangent[c] +=
-          std::sqrt(kNoise.psd_time[static_cast<std::size_t>(c)] / seconds) * path.drive[k].duration * draw[c];
+          std::sqrt(kForceNoise.psd_time[static_cast<std::size_t>(c)] / seconds) * path.drive[k].duration * draw[c];
     }
     pose = compose(pose, exp(tangent));
   }
@@ -91,10 +91,10 @@ Pose2 pushed(const SegmentPath& path, const Eigen::Vector3d& draw) {
 }
 
 /// Slip is drawn once, the force follows its law from segment to segment.
-Outcome learned(const Drive& drive) {
+Outcome learned(const ForceDrive& drive) {
   const MotionModel model(with_force(named_basis("drive-5"), ForceFrame::Body), {});
   CausalFilterSettings settings;
-  settings.noise.shape = kNoise;
+  settings.noise.shape = kForceNoise;
   settings.force = kLaw;
   settings.force.time_constant = drive.time_constant;
   settings.iekf.huber = 1e9;
@@ -117,7 +117,7 @@ Outcome learned(const Drive& drive) {
   };
   Eigen::VectorXd truth = 0.05 * draw(model.size());
   truth(places) = drive.force * root * draw(std::ssize(places));
-  Pose2 observed = tests::measured_pose({}, kNoise, random), pose;
+  Pose2 observed = tests::measured_pose({}, kForceNoise, random), pose;
   Eigen::Vector3d last = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < drive.segments; ++i) {
     const double keep = std::exp(-2.0 / kLaw.time_constant);
@@ -126,11 +126,12 @@ Outcome learned(const Drive& drive) {
     Segment segment{.start = 0.5 + 2.0 * static_cast<double>(i), .end = 2.5 + 2.0 * static_cast<double>(i)};
     const SegmentPath path = integrate_segment(model, truth, inputs, segment);
     last = drive.correlation * last + std::sqrt(1.0 - drive.correlation * drive.correlation) * draw(3);
-    pose = compose(pose, drive.correlation > 0.0 ? pushed(path, last) : tests::disturbed_motion(path, kNoise, random));
-    const Pose2 seen = tests::measured_pose(pose, kNoise, random);
+    pose = compose(pose,
+                   drive.correlation > 0.0 ? pushed(path, last) : tests::disturbed_motion(path, kForceNoise, random));
+    const Pose2 seen = tests::measured_pose(pose, kForceNoise, random);
     segment.measured = measured_pose(between(observed, seen));
     observed = seen;
-    filter.learn(inputs, segment, kSpeeds);
+    filter.learn(inputs, segment, kForceSpeeds);
   }
   const Estimate reported = filter.reported();
   const Eigen::VectorXd prior_variance = filter.prior_std().cwiseAbs2();
@@ -140,11 +141,11 @@ Outcome learned(const Drive& drive) {
 }
 
 /// Mean over runs of the normalised squared error of some parameters, per parameter.
-double nees(const Drive& like, bool of_force, int runs) {
+double nees(const ForceDrive& like, bool of_force, int runs) {
   const BodyForce process(with_force(named_basis("drive-5"), ForceFrame::Body), kLaw);
   double sum = 0.0;
   for (int run = 0; run < runs; ++run) {
-    Drive drive = like;
+    ForceDrive drive = like;
     drive.seed = 7000 + static_cast<std::uint64_t>(run);
     const Outcome outcome = learned(drive);
     std::vector<Eigen::Index> rows;
@@ -162,7 +163,7 @@ double nees(const Drive& like, bool of_force, int runs) {
 
 TEST_CASE("force and slip are as uncertain as reported, under white noise and under noise that lasts") {
   for (const double correlation : {0.0, 0.6}) {
-    const Drive drive{.correlation = correlation};
+    const ForceDrive drive{.correlation = correlation};
     const double force = nees(drive, true, 40);
     const double slip = nees(drive, false, 40);
     CAPTURE(correlation);

@@ -12,26 +12,26 @@
 namespace slipwise {
 namespace {
 
-const ReferenceSpeeds kSpeeds{.v = 1.5, .omega = 0.8};
-const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
+const ReferenceSpeeds kBankSpeeds{.v = 1.5, .omega = 0.8};
+const MotionNoise kBankNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
 constexpr Eigen::Index kYaw = 1;  // place of the yaw slip that goes with omega
 
 CausalFilter filter_of(const MotionModel& model, bool branches) {
   CausalFilterSettings settings;
-  settings.noise.shape = kNoise;
+  settings.noise.shape = kBankNoise;
   settings.branches.follow = branches;
   return {model, settings};
 }
 
 void learn(CausalFilter& filter, const tests::SimulatedDrive& drive) {
   for (const Segment& segment : drive.segments) {
-    filter.learn(drive.inputs, segment, kSpeeds);
+    filter.learn(drive.inputs, segment, kBankSpeeds);
   }
 }
 
 tests::SimulatedDrive driven(const MotionModel& model, double yaw_slip, std::uint64_t seed, std::size_t windows) {
   return tests::simulate_drive(model, Eigen::Vector2d(-0.05, yaw_slip),
-                               {.seed = seed, .windows = windows, .window = 1.0, .noise = kNoise});
+                               {.seed = seed, .windows = windows, .window = 1.0, .noise = kBankNoise});
 }
 
 TEST_CASE("a jump of yaw slip is followed within ten segments, and counts as another terrain") {
@@ -48,14 +48,14 @@ TEST_CASE("a jump of yaw slip is followed within ten segments, and counts as ano
     learn(plain, after);
     int changes = 0;
     for (const Segment& segment : after.segments) {
-      branches.learn(after.inputs, segment, kSpeeds);
+      branches.learn(after.inputs, segment, kBankSpeeds);
       changes += branches.branches().change().alarm ? 1 : 0;
     }
     CHECK(std::abs(branches.estimate().mean[kYaw] - jumped) < 0.03);
     CHECK(std::abs(plain.estimate().mean[kYaw] - jumped) > 0.06);
     const auto later = driven(model, jumped, 93, 30);
     for (const Segment& segment : later.segments) {
-      branches.learn(later.inputs, segment, kSpeeds);
+      branches.learn(later.inputs, segment, kBankSpeeds);
       changes += branches.branches().change().alarm ? 1 : 0;
     }
     CHECK(changes == 1);
@@ -85,8 +85,8 @@ TEST_CASE("where slip stays, it is known as well as if it never jumped") {
     CausalFilter plain = filter_of(model, false);
     const auto drive = driven(model, -0.3, seed, 60);
     for (const Segment& segment : drive.segments) {
-      branches.learn(drive.inputs, segment, kSpeeds);
-      plain.learn(drive.inputs, segment, kSpeeds);
+      branches.learn(drive.inputs, segment, kBankSpeeds);
+      plain.learn(drive.inputs, segment, kBankSpeeds);
       CHECK_FALSE(branches.branches().change().alarm);
       followed += std::abs(branches.estimate().mean[kYaw] + 0.3);
       fixed += std::abs(plain.estimate().mean[kYaw] + 0.3);

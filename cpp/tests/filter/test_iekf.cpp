@@ -14,12 +14,7 @@
 namespace slipwise {
 namespace {
 
-const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.005};
 const Eigen::Matrix3d kExact = 1e-6 * Eigen::Matrix3d::Identity();
-
-Estimate wide_prior(const MotionModel& model, double sigma = 0.2) {
-  return {Eigen::VectorXd::Zero(model.size()), sigma * sigma * Eigen::MatrixXd::Identity(model.size(), model.size())};
-}
 
 /// Straight driving makes the last pose linear in the forward slip.
 InputHistory straight_inputs() {
@@ -31,10 +26,10 @@ TEST_CASE("the filter recovers slip and clock offset within three sigma") {
   const MotionModel model(named_basis("odd-even-10"), {.clock_offset = true});
   Eigen::VectorXd truth(11);
   truth << tests::sample_slip(model.basis(), 51, 0.08), 0.07;
-  const auto drive = tests::simulate_drive(model, truth, {.seed = 52, .windows = 100, .noise = kNoise});
-  Estimate estimate = wide_prior(model);
+  const auto drive = tests::simulate_drive(model, truth, {.seed = 52, .windows = 100, .noise = tests::kNoise});
+  Estimate estimate = tests::wide_prior(model);
   for (const Segment& segment : drive.segments) {
-    const Eigen::Matrix3d noise = tests::window_noise(model, estimate.mean, drive.inputs, segment, kNoise);
+    const Eigen::Matrix3d noise = tests::window_noise(model, estimate.mean, drive.inputs, segment, tests::kNoise);
     estimate = iekf_update(model, estimate, drive.inputs, segment, noise).estimate;
   }
   for (Eigen::Index i = 0; i < truth.size(); ++i) {
@@ -50,10 +45,11 @@ TEST_CASE("the filter recovers lags and delays") {
   Eigen::VectorXd truth(6), start(6);
   truth << -0.08, -0.15, std::log(0.5), std::log(0.3), std::log(0.12), std::log(0.15);
   start << 0.0, 0.0, std::log(0.3), std::log(0.3), std::log(0.1), std::log(0.1);
-  const auto drive = tests::simulate_drive(model, truth, {.seed = 53, .windows = 150, .window = 2.0, .noise = kNoise});
+  const auto drive =
+      tests::simulate_drive(model, truth, {.seed = 53, .windows = 150, .window = 2.0, .noise = tests::kNoise});
   Estimate estimate{start, 0.25 * Eigen::MatrixXd::Identity(6, 6)};
   for (const Segment& segment : drive.segments) {
-    const Eigen::Matrix3d noise = tests::window_noise(model, estimate.mean, drive.inputs, segment, kNoise);
+    const Eigen::Matrix3d noise = tests::window_noise(model, estimate.mean, drive.inputs, segment, tests::kNoise);
     estimate = iekf_update(model, estimate, drive.inputs, segment, noise).estimate;
   }
   for (Eigen::Index i = 0; i < 4; ++i) {
@@ -72,10 +68,10 @@ TEST_CASE("the filter stays honest on its way to a short lag behind a long delay
   start << 0.0, 0.0, std::log(0.3), std::log(0.3), std::log(0.1), std::log(0.1);
   for (const unsigned seed : {61U, 62U, 63U}) {
     const auto drive =
-        tests::simulate_drive(model, truth, {.seed = seed, .windows = 100, .window = 2.5, .noise = kNoise});
+        tests::simulate_drive(model, truth, {.seed = seed, .windows = 100, .window = 2.5, .noise = tests::kNoise});
     Estimate estimate{start, Eigen::VectorXd{{0.04, 0.04, 0.64, 0.64, 0.64, 0.64}}.asDiagonal()};
     for (const Segment& segment : drive.segments) {
-      const Eigen::Matrix3d noise = tests::window_noise(model, estimate.mean, drive.inputs, segment, kNoise);
+      const Eigen::Matrix3d noise = tests::window_noise(model, estimate.mean, drive.inputs, segment, tests::kNoise);
       estimate = iekf_update(model, estimate, drive.inputs, segment, noise).estimate;
     }
     for (Eigen::Index i = 0; i < truth.size(); ++i) {
@@ -90,7 +86,7 @@ TEST_CASE("on a linear problem the filter is the Kalman filter") {
   const std::vector<std::string> lon{"V"}, lat{"V"}, none;
   const MotionModel model(Basis("linear", lon, lat, none), {});
   const InputHistory inputs = straight_inputs();
-  Estimate prior = wide_prior(model);
+  Estimate prior = tests::wide_prior(model);
   prior.covariance(0, 1) = prior.covariance(1, 0) = 0.01;
   const Segment segment{.start = 1.0, .end = 3.0, .measured = measured_pose({1.9, 0.1, 0.02})};
   Eigen::Matrix3d noise = Eigen::Vector3d(0.04, 0.09, 0.01).asDiagonal();
@@ -121,11 +117,11 @@ TEST_CASE("covariances stay symmetric, positive definite, and never grow in any 
     const MotionModel model(basis, {.clock_offset = true});
     Eigen::VectorXd truth(model.size());
     truth << tests::sample_slip(basis, 54, 0.05), -0.03;
-    const auto drive = tests::simulate_drive(model, truth, {.seed = 55, .windows = 20, .noise = kNoise});
-    Estimate estimate = wide_prior(model);
+    const auto drive = tests::simulate_drive(model, truth, {.seed = 55, .windows = 20, .noise = tests::kNoise});
+    Estimate estimate = tests::wide_prior(model);
     for (const Segment& segment : drive.segments) {
       const Eigen::MatrixXd before = estimate.covariance;
-      const Eigen::Matrix3d noise = tests::window_noise(model, estimate.mean, drive.inputs, segment, kNoise);
+      const Eigen::Matrix3d noise = tests::window_noise(model, estimate.mean, drive.inputs, segment, tests::kNoise);
       estimate = iekf_update(model, estimate, drive.inputs, segment, noise).estimate;
       CHECK(estimate.covariance == estimate.covariance.transpose());
       CHECK(Cholesky(estimate.covariance).positive_definite());
@@ -136,7 +132,7 @@ TEST_CASE("covariances stay symmetric, positive definite, and never grow in any 
 
 TEST_CASE("a residual beyond the gate leaves the estimate as it was and says so") {
   const MotionModel model(named_basis("edd-2"), {});
-  const Estimate prior = wide_prior(model, 0.01);
+  const Estimate prior = tests::wide_prior(model, 0.01);
   const Segment jump{.start = 1.0, .end = 2.0, .measured = measured_pose({1.0, 5.0, 0.0})};
   const IekfUpdate update = iekf_update(model, prior, straight_inputs(), jump, 0.01 * Eigen::Matrix3d::Identity());
   CHECK(update.nis == doctest::Approx(2500.0));
@@ -149,7 +145,7 @@ TEST_CASE("a residual beyond the gate leaves the estimate as it was and says so"
 
 TEST_CASE("a residual between Huber's threshold and the gate counts for less") {
   const MotionModel model(named_basis("edd-2"), {});
-  const Estimate prior = wide_prior(model, 0.1);
+  const Estimate prior = tests::wide_prior(model, 0.1);
   const Segment odd{.start = 1.0, .end = 2.0, .measured = measured_pose({1.0 + 5.0 * std::sqrt(0.02), 0.0, 0.0})};
   const Eigen::Matrix3d noise = 0.01 * Eigen::Matrix3d::Identity();
   const IekfUpdate update = iekf_update(model, prior, straight_inputs(), odd, noise);
@@ -169,7 +165,7 @@ TEST_CASE("step halving keeps a far start from diverging") {
   const Eigen::Vector2d truth(0.0, 0.9);
   Segment segment{.start = 0.0, .end = 3.0};
   segment.measured = measured_pose(integrate_segment(model, truth, inputs, segment).poses.back());
-  const Estimate prior = wide_prior(model, 1.0);
+  const Estimate prior = tests::wide_prior(model, 1.0);
   const auto cost = [&](const IekfSettings& settings) {
     const Estimate estimate = iekf_update(model, prior, inputs, segment, kExact, settings).estimate;
     const Pose2 reached = integrate_segment(model, estimate.mean, inputs, segment).poses.back();
@@ -201,7 +197,7 @@ TEST_CASE("sizes that do not fit and numbers that are not finite are refused wit
   const auto update = [&](const Estimate& prior, const Segment& s, const Eigen::Matrix3d& noise) {
     return iekf_update(model, prior, straight_inputs(), s, noise);
   };
-  const Estimate good = wide_prior(model);
+  const Estimate good = tests::wide_prior(model);
   CHECK_THROWS_WITH_AS(update({Eigen::VectorXd::Zero(3), good.covariance}, segment, kExact),
                        doctest::Contains("takes 2 parameters, got 3"), std::invalid_argument);
   CHECK_THROWS_WITH_AS(update({good.mean, Eigen::MatrixXd::Identity(3, 3)}, segment, kExact),

@@ -19,7 +19,7 @@ Estimate joint() {
 }
 
 const Eigen::Vector2d kStd(0.3, 0.3);
-const ReferenceSpeeds kSpeeds{.v = 1.0, .omega = 0.5};
+const ReferenceSpeeds kSurfaceSpeeds{.v = 1.0, .omega = 0.5};
 
 SurfaceSlip at(double a, double b, double std) {
   return {.mean = Eigen::Vector2d(a, b),
@@ -27,12 +27,12 @@ SurfaceSlip at(double a, double b, double std) {
           .by_robot = Eigen::MatrixXd::Zero(2, 0),
           .robot = Eigen::VectorXd(0),
           .prior_std = kStd,
-          .speeds = kSpeeds};
+          .speeds = kSurfaceSpeeds};
 }
 
 TEST_CASE("a surface that is left and taken again at once is as it was") {
   const Estimate before = joint();
-  const SurfaceSlip surface = surface_of(before, Eigen::Vector3d::Ones(), kStd, kSpeeds);
+  const SurfaceSlip surface = surface_of(before, Eigen::Vector3d::Ones(), kStd, kSurfaceSpeeds);
   const Estimate after = joined_with(surface, before.mean.tail(1), before.covariance.bottomRightCorner(1, 1));
   CHECK(after.mean.isApprox(before.mean, 1e-12));
   CHECK(after.covariance.isApprox(before.covariance, 1e-12));
@@ -46,15 +46,15 @@ TEST_CASE("what another surface tells of the robot reaches a surface as it would
   const Eigen::Vector3d gain =
       prior.covariance * measures.transpose() / (measures * prior.covariance * measures.transpose() + noise);
   const Estimate direct{prior.mean + gain * innovation, prior.covariance - gain * measures * prior.covariance};
-  const SurfaceSlip surface = surface_of(prior, Eigen::Vector3d::Ones(), kStd, kSpeeds);
+  const SurfaceSlip surface = surface_of(prior, Eigen::Vector3d::Ones(), kStd, kSurfaceSpeeds);
   const Estimate recalled = joined_with(surface, direct.mean.tail(1), direct.covariance.bottomRightCorner(1, 1));
   CHECK(recalled.mean.isApprox(direct.mean, 1e-12));
   CHECK(recalled.covariance.isApprox(direct.covariance, 1e-12));
 }
 
 TEST_CASE("an inflated covariance is remembered as inflated") {
-  const SurfaceSlip plain = surface_of(joint(), Eigen::Vector3d::Ones(), kStd, kSpeeds);
-  const SurfaceSlip wide = surface_of(joint(), Eigen::Vector3d::Constant(2.0), kStd, kSpeeds);
+  const SurfaceSlip plain = surface_of(joint(), Eigen::Vector3d::Ones(), kStd, kSurfaceSpeeds);
+  const SurfaceSlip wide = surface_of(joint(), Eigen::Vector3d::Constant(2.0), kStd, kSurfaceSpeeds);
   CHECK(wide.covariance.isApprox(4.0 * plain.covariance, 1e-12));
   CHECK(wide.by_robot == plain.by_robot);
 }
@@ -71,18 +71,18 @@ TEST_CASE("a new surface is expected between those that are known, and as far aw
   const Eigen::VectorXd robot(0);
   const std::vector<SurfaceSlip> alike{at(-0.1, -0.3, 0.01), at(-0.11, -0.31, 0.01), at(-0.09, -0.3, 0.01)};
   const std::vector<SurfaceSlip> apart{at(-0.1, -0.3, 0.01), at(-0.5, -0.9, 0.01), at(-0.3, 0.3, 0.01)};
-  const SurfaceSlip near = shrunk_prior(alike, robot, kStd, kSpeeds);
-  const SurfaceSlip far = shrunk_prior(apart, robot, kStd, kSpeeds);
+  const SurfaceSlip near = shrunk_prior(alike, robot, kStd, kSurfaceSpeeds);
+  const SurfaceSlip far = shrunk_prior(apart, robot, kStd, kSurfaceSpeeds);
   CHECK(near.mean[0] == doctest::Approx(-0.1).epsilon(0.1));
   CHECK(near.mean[1] == doctest::Approx(-0.3).epsilon(0.1));
   CHECK(near.covariance(1, 1) < 0.02);
   CHECK(far.covariance(1, 1) > 2.0 * near.covariance(1, 1));
-  CHECK(shrunk_prior({}, robot, kStd, kSpeeds).mean.isZero());
+  CHECK(shrunk_prior({}, robot, kStd, kSurfaceSpeeds).mean.isZero());
 }
 
 TEST_CASE("the prior of a new surface is a covariance") {
   const std::vector<SurfaceSlip> known{at(-0.1, -0.3, 0.05)};
-  const SurfaceSlip fresh = shrunk_prior(known, Eigen::VectorXd(0), kStd, kSpeeds);
+  const SurfaceSlip fresh = shrunk_prior(known, Eigen::VectorXd(0), kStd, kSurfaceSpeeds);
   CHECK(symmetric_eigen(fresh.covariance).values.minCoeff() > 0.0);
   CHECK(fresh.covariance(0, 0) > 0.05 * 0.05);
 }

@@ -44,7 +44,7 @@ void heard(MotionLearner& learner, const std::string& name, double slip, std::ui
   learner.end_run();
 }
 
-std::string present_name(const MotionLearner& learner) {
+std::string named_terrain(const MotionLearner& learner) {
   const SurfaceBank bank = learner.surfaces();
   return bank.present() ? bank.surfaces()[*bank.present()].name : "";
 }
@@ -103,7 +103,7 @@ TEST_CASE("another class amid a drive lets the surfaces compete, and segments de
   learner.start_run();
   learner.cue_terrain(said("white"));
   CHECK(first_probabilities(learner, drive_on(0.5, 72, 20.0, 72000.0)).size() > 1);
-  CHECK(present_name(learner) == learner.surfaces().surfaces().front().name);
+  CHECK(named_terrain(learner) == learner.surfaces().surfaces().front().name);
 }
 
 TEST_CASE("a wrong class is overruled, and is worth less from then on") {
@@ -115,7 +115,7 @@ TEST_CASE("a wrong class is overruled, and is worth less from then on") {
   };
   const double before = likelihood();
   heard(learner, "green", 0.5, 73);
-  CHECK(present_name(learner) == learner.surfaces().surfaces().front().name);
+  CHECK(named_terrain(learner) == learner.surfaces().surfaces().front().name);
   CHECK(likelihood() > 2.0 * before);
 }
 

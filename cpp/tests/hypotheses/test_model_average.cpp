@@ -12,7 +12,7 @@
 namespace slipwise {
 namespace {
 
-const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
+const MotionNoise kAverageNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
 
 Basis plain() { return {"none", {}, {}, {}}; }
 
@@ -21,7 +21,8 @@ const CausalFilterSettings kBlind{.branches = {.follow = false}};
 ModelAverage learned(const std::vector<Basis>& bases, const MotionModel& real, const Eigen::VectorXd& truth,
                      const CausalFilterSettings& settings = {}) {
   ModelAverage average("auto", bases, {}, settings, {});
-  const auto drive = tests::simulate_drive(real, truth, {.seed = 81, .windows = 80, .window = 2.0, .noise = kNoise});
+  const auto drive =
+      tests::simulate_drive(real, truth, {.seed = 81, .windows = 80, .window = 2.0, .noise = kAverageNoise});
   for (const Segment& segment : drive.segments) {
     average.learn(drive.inputs, segment);
   }
@@ -42,8 +43,8 @@ TEST_CASE("a model that was wrong comes back when the terrain changes and nobody
   const MotionModel real(named_basis("edd-2"), {});
   ModelAverage average = learned({plain(), named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4), kBlind);
   CHECK(average.state().weights[0] < 0.05);
-  const auto firm =
-      tests::simulate_drive(real, Eigen::Vector2d::Zero(), {.seed = 82, .windows = 30, .window = 2.0, .noise = kNoise});
+  const auto firm = tests::simulate_drive(real, Eigen::Vector2d::Zero(),
+                                          {.seed = 82, .windows = 30, .window = 2.0, .noise = kAverageNoise});
   for (const Segment& segment : firm.segments) {
     average.learn(firm.inputs, segment);
   }
@@ -58,7 +59,7 @@ TEST_CASE("a segment is learned in pieces as it is at once, alarms included") {
   int alarms = 0;
   for (const double yaw_slip : {-0.4, 0.0}) {
     const auto drive = tests::simulate_drive(real, Eigen::Vector2d(-0.1, yaw_slip),
-                                             {.seed = 83, .windows = 40, .window = 2.0, .noise = kNoise});
+                                             {.seed = 83, .windows = 40, .window = 2.0, .noise = kAverageNoise});
     for (const Segment& segment : drive.segments) {
       whole.learn(drive.inputs, segment);
       pieces.start(drive.inputs, segment);
@@ -80,7 +81,7 @@ TEST_CASE("a segment is learned in pieces as it is at once, alarms included") {
 TEST_CASE("a segment that is not finished is learned before the next one") {
   const MotionModel real(named_basis("edd-2"), {});
   const auto drive = tests::simulate_drive(real, Eigen::Vector2d(-0.1, -0.4),
-                                           {.seed = 84, .windows = 10, .window = 2.0, .noise = kNoise});
+                                           {.seed = 84, .windows = 10, .window = 2.0, .noise = kAverageNoise});
   ModelAverage whole("auto", {plain(), named_basis("edd-2")}, {}, {}, {});
   ModelAverage pieces = whole;
   for (const Segment& segment : drive.segments) {
@@ -154,7 +155,7 @@ TEST_CASE("a change of terrain is found while driving, and learned faster than w
   for (const double slip : {-0.3, -0.6}) {
     const std::size_t windows = slip == -0.3 ? 80 : 20;
     const auto drive = tests::simulate_drive(real, Eigen::Vector2d(-0.05, slip),
-                                             {.seed = 83, .windows = windows, .window = 2.0, .noise = kNoise});
+                                             {.seed = 83, .windows = windows, .window = 2.0, .noise = kAverageNoise});
     for (std::size_t i = 0; i < windows; ++i) {
       seeing.learn(drive.inputs, drive.segments[i]);
       unseeing.learn(drive.inputs, drive.segments[i]);
@@ -182,7 +183,7 @@ TEST_CASE("on a new terrain candidates get as much weight as at first, on the ol
     for (const double slip : {-0.3, later_slip}) {
       const std::size_t windows = slip == -0.3 ? 80 : 50;
       const auto drive = tests::simulate_drive(real, Eigen::Vector2d(-0.05, slip),
-                                               {.seed = 83, .windows = windows, .window = 2.0, .noise = kNoise});
+                                               {.seed = 83, .windows = windows, .window = 2.0, .noise = kAverageNoise});
       for (const Segment& segment : drive.segments) {
         average.learn(drive.inputs, segment);
         alarms += average.change().alarm ? 1 : 0;

@@ -8,7 +8,7 @@
 namespace slipwise {
 namespace {
 
-const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
+const MotionNoise kEvidenceNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
 const DisturbanceModel kWhite{.candidates = {{0.0, 0.0, 1.0}}, .weights = Eigen::VectorXd::Ones(1)};
 const DisturbanceModel kColoured{.candidates = {{0.5, 0.5, 20.0}}, .weights = Eigen::VectorXd::Ones(1)};
 
@@ -17,13 +17,13 @@ MotionModel model() { return {named_basis("edd-2"), {}}; }
 SurfacePosterior posterior(double forward, double yaw, double std) {
   return {.estimate = {Eigen::Vector2d(forward, yaw), std * std * Eigen::Matrix2d::Identity()},
           .prior_std = Eigen::Vector2d(0.3, 0.3),
-          .noise = kNoise,
+          .noise = kEvidenceNoise,
           .noise_scale = Eigen::Vector3d::Ones()};
 }
 
 double evidence(const SurfacePosterior& known, const DisturbanceModel& law, double yaw) {
   const auto drive = tests::simulate_drive(model(), Eigen::Vector2d(-0.05, yaw),
-                                           {.seed = 21, .windows = 8, .window = 2.0, .noise = kNoise});
+                                           {.seed = 21, .windows = 8, .window = 2.0, .noise = kEvidenceNoise});
   SurfaceEvidence sum(model(), known, law);
   double total = 0.0;
   for (const Segment& segment : drive.segments) {

@@ -27,19 +27,19 @@ CarCurves true_car() {
           .understeer = 0.08};
 }
 
-struct Drive {
+struct CarDrive {
   InputHistory commands;
   std::vector<BodyTwist> twists;  ///< means over each fifth of a second
 };
 
 /// Throttles of [0, 0.6] and any steering, each held for a second and a half, and reaches it after its delay.
-Drive random_drive(const CarCurves& car, double seconds, double noise, unsigned seed) {
+CarDrive random_drive(const CarCurves& car, double seconds, double noise, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> throttle(0.0, 0.6), steering(-1.0, 1.0);
   std::normal_distribution<double> normal(0.0, noise);
   std::vector<double> t;
   std::vector<BodyTwist> command;
-  Drive drive;
+  CarDrive drive;
   CarState state;
   BodyTwist now{}, sum{};
   const auto steps = static_cast<int>(std::lround(seconds / kStep));
@@ -65,7 +65,7 @@ Drive random_drive(const CarCurves& car, double seconds, double noise, unsigned 
   return drive;
 }
 
-CarCurveFilter learned(const Drive& drive, std::size_t count) {
+CarCurveFilter learned(const CarDrive& drive, std::size_t count) {
   CarCurveFilter filter({.top_speed = 4.0, .curvature = 1.5});
   filter.start_run(0.0);
   for (std::size_t k = 0; k < std::min(count, drive.twists.size()); ++k) {
@@ -171,7 +171,7 @@ TEST_CASE("the kinematic bicycle takes the gains that fit best so far") {
 }
 
 TEST_CASE("an outlier moves the curves little") {
-  Drive drive = random_drive(true_car(), 120.0, 0.02, 9);
+  CarDrive drive = random_drive(true_car(), 120.0, 0.02, 9);
   const CarCurves before = learned(drive, 10000).curves();
   drive.twists[300].v = 60.0;
   drive.twists[300].omega = -40.0;
@@ -182,7 +182,7 @@ TEST_CASE("an outlier moves the curves little") {
 }
 
 TEST_CASE("a steady sideways slip is followed, with a lag of its own") {
-  Drive drive = random_drive(true_car(), 40.0, 0.01, 2);
+  CarDrive drive = random_drive(true_car(), 40.0, 0.01, 2);
   for (BodyTwist& twist : drive.twists) {
     twist.vy = -0.3;
   }
@@ -192,7 +192,7 @@ TEST_CASE("a steady sideways slip is followed, with a lag of its own") {
 }
 
 TEST_CASE("after the last twist that was learned, what the car does follows one of a shorter time by its weight") {
-  Drive drive = random_drive(true_car(), 40.0, 0.01, 2);
+  CarDrive drive = random_drive(true_car(), 40.0, 0.01, 2);
   for (BodyTwist& twist : drive.twists) {
     twist.vy = -0.3;
   }

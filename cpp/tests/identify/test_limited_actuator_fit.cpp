@@ -18,24 +18,24 @@ using tests::kLimitedChain;
 using tests::kLimitedSeparation;
 using tests::limited_record;
 
-constexpr double kFree = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 const CommandLimits kLimits{.speed = {.saturation = 1.2, .slew_rate_up = 1.0, .slew_rate_down = 1.8},
                             .wheel_separation = kLimitedSeparation};
 
-LimitedActuator truth() { return {.limits = kLimits, .actuator = kLimitedChain}; }
+LimitedActuator true_drive() { return {.limits = kLimits, .actuator = kLimitedChain}; }
 
 std::vector<WheelRecord> records_of(unsigned seed) { return {limited_record(kLimits, seed)}; }
 
 TEST_CASE("the truth explains the wheels better than a drive without limits, or with others") {
   const std::vector<WheelRecord> records = records_of(21);
   const LimitedActuatorFit fit(records, {}, kLimitedSeparation);
-  const double least = fit.scored(truth()).loss.total;
-  LimitedActuator other = truth();
+  const double least = fit.scored(true_drive()).loss.total;
+  LimitedActuator other = true_drive();
   other.limits = {.wheel_separation = kLimitedSeparation};
   CHECK(fit.scored(other).loss.total > least + 100.0);
   for (const LimitKind kind : {LimitKind::Saturation, LimitKind::SlewRateUp, LimitKind::SlewRateDown}) {
     for (const double factor : {0.8, 1.25}) {
-      other = truth();
+      other = true_drive();
       limit_of(other.limits.speed, kind) *= factor;
       CHECK(fit.scored(other).loss.total > least + 20.0);
     }
@@ -46,24 +46,24 @@ TEST_CASE("the truth explains the wheels better than a drive without limits, or 
 TEST_CASE("a drive is scored alike whatever was asked before") {
   const std::vector<WheelRecord> records = records_of(22);
   const LimitedActuatorFit fit(records, {}, kLimitedSeparation);
-  const double first = fit.scored(truth()).loss.total;
-  LimitedActuator other = truth();
+  const double first = fit.scored(true_drive()).loss.total;
+  LimitedActuator other = true_drive();
   other.limits.speed.saturation = 1.4;
   other.actuator.time_constant_omega = 0.5;
   fit.scored(other);
-  CHECK(fit.scored(truth()).loss.total == first);
+  CHECK(fit.scored(true_drive()).loss.total == first);
   CHECK(LimitedActuatorFit(records, {}, kLimitedSeparation).scored(other).loss.total == fit.scored(other).loss.total);
 }
 
 TEST_CASE("refining from elsewhere comes to the truth within three reported standard deviations") {
   const std::vector<WheelRecord> records = records_of(23);
   const LimitedActuatorFit fit(records, {}, kLimitedSeparation);
-  LimitedActuator start = truth();
+  LimitedActuator start = true_drive();
   start.limits.speed = {.saturation = 1.3, .slew_rate_up = 1.3, .slew_rate_down = 1.4};
   start.actuator.time_constant_v = 0.25;
   start.actuator.delay_omega = 0.15;
   const ScoredActuator refined = fit.refine(start, 40);
-  CHECK(refined.loss.total <= fit.scored(truth()).loss.total);
+  CHECK(refined.loss.total <= fit.scored(true_drive()).loss.total);
   const LimitedActuatorFit::Spread spread = fit.spread(refined.drive);
   for (const LimitKind kind : {LimitKind::Saturation, LimitKind::SlewRateUp, LimitKind::SlewRateDown}) {
     const double std = spread.std.front().at(static_cast<std::size_t>(kind));
@@ -77,7 +77,7 @@ TEST_CASE("refining from elsewhere comes to the truth within three reported stan
 TEST_CASE("what limits nothing stays so, and has no spread") {
   const std::vector<WheelRecord> records = records_of(24);
   const LimitedActuatorFit fit(records, {}, kLimitedSeparation);
-  const ScoredActuator refined = fit.refine(truth(), 10);
+  const ScoredActuator refined = fit.refine(true_drive(), 10);
   CHECK(refined.drive.limits.yaw_rate == AxisLimits{});
   CHECK(refined.drive.limits.side == AxisLimits{});
   const LimitedActuatorFit::Spread spread = fit.spread(refined.drive);
@@ -108,7 +108,7 @@ TEST_CASE("kinds and axes of limits are places in them") {
   CommandLimits limits;
   axis_of(limits, LimitedAxis::Side).saturation = 0.4;
   CHECK(limits.side.saturation == 0.4);
-  CHECK(limits.speed.saturation == kFree);
+  CHECK(limits.speed.saturation == kNoBound);
   const CommandLimits sides{.wheel_separation = 2.0, .gain_v = 0.5, .gain_omega = 3.0};
   CHECK(speed_of_side(sides, {.v = 1.0, .omega = -0.1}) == doctest::Approx(0.2));
 }

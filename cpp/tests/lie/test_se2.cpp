@@ -13,7 +13,7 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn = std::numbers::pi;
 
 double distance(const Pose2& a, const Pose2& b) { return (a.vector() - b.vector()).lpNorm<Eigen::Infinity>(); }
 
@@ -21,7 +21,7 @@ double distance(const Pose2& a, const Pose2& b) { return (a.vector() - b.vector(
 std::vector<Pose2> sample_poses() {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> uniform(-3.0, 3.0);
-  std::vector<Pose2> poses{{}, {1.0, -2.0, 0.0}, {0.5, 0.5, 1e-9}, {-1.0, 0.3, -0.03}, {0.2, 0.1, kPi - 1e-9}};
+  std::vector<Pose2> poses{{}, {1.0, -2.0, 0.0}, {0.5, 0.5, 1e-9}, {-1.0, 0.3, -0.03}, {0.2, 0.1, kHalfTurn - 1e-9}};
   for (int i = 0; i < 20; ++i) {
     const double x = uniform(random), y = uniform(random);
     poses.push_back({x, y, uniform(random)});
@@ -91,15 +91,15 @@ TEST_CASE("exp is the matrix exponential") {
 }
 
 TEST_CASE("exp counts whole turns and returns to the start of the circle") {
-  const Pose2 pose = exp({2.0, 0.0, 4.0 * kPi});
-  CHECK(pose.theta == 4.0 * kPi);
+  const Pose2 pose = exp({2.0, 0.0, 4.0 * kHalfTurn});
+  CHECK(pose.theta == 4.0 * kHalfTurn);
   CHECK(std::hypot(pose.x, pose.y) < 1e-14);
 }
 
 TEST_CASE("log of more than half a turn goes the short way to the same place") {
   const Pose2 pose{1.0, 2.0, 4.0};
   const Pose2 reached = exp(log(pose));
-  CHECK(reached.theta == doctest::Approx(4.0 - 2.0 * kPi).epsilon(1e-14));
+  CHECK(reached.theta == doctest::Approx(4.0 - 2.0 * kHalfTurn).epsilon(1e-14));
   CHECK(std::hypot(reached.x - pose.x, reached.y - pose.y) < 1e-13);
 }
 

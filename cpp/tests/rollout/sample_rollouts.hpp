@@ -14,6 +14,11 @@
 
 namespace slipwise::tests {
 
+inline constexpr double kPeriod = 0.05;  // [s]
+inline const std::vector<RolloutStart> kStart{{{1.0, -2.0, 0.5}, {0.4, 0.2}}};
+inline const std::vector<DriveCommand> kPast{{0.5, 0.1}, {0.6, 0.0}, {0.5, 0.2}, {0.4, 0.3}};
+inline const std::vector<DriveCommand> kTurnedPast{{0.2, 0.1}, {0.5, -0.2}, {0.4, 0.3}, {0.3, 0.2}};
+
 /// Smoothly changing commands, forwards, backwards and spinning, side by side over the rollouts.
 template <typename Scalar>
 struct SampleCommands {

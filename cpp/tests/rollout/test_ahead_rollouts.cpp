@@ -17,10 +17,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPeriod = 0.05;
-const std::vector<RolloutStart> kStart{{{1.0, -2.0, 0.5}, {0.4, 0.2}}};
-const std::vector<DriveCommand> kPast{{0.2, 0.1}, {0.5, -0.2}, {0.4, 0.3}, {0.3, 0.2}};
-
 SlipAhead two_edges(Eigen::Index slip) {
   return {.edges = {0.8, 2.3},
           .changes = {Eigen::VectorXd::LinSpaced(slip, -0.05, 0.05), Eigen::VectorXd::LinSpaced(slip, 0.1, -0.1)}};
@@ -28,30 +24,31 @@ SlipAhead two_edges(Eigen::Index slip) {
 
 Segment segment_of(const tests::SampleCommands<double>& commands) {
   return {.start = 0.0,
-          .end = kPeriod * static_cast<double>(commands.periods),
-          .initial = BodyTwist{kStart[0].drive.v, 0.0, kStart[0].drive.omega}};
+          .end = tests::kPeriod * static_cast<double>(commands.periods),
+          .initial = BodyTwist{tests::kStart[0].drive.v, 0.0, tests::kStart[0].drive.omega}};
 }
 
 template <typename Scalar>
 double error(const MotionModel& model, const Eigen::VectorXd& parameters, const tests::SampleCommands<Scalar>& commands,
              InstructionLevel level, double rise) {
   const SlipAhead ahead = two_edges(model.slip_size());
-  const RolloutProgram program(model, parameters, {.period = kPeriod, .rise_x = rise, .ahead = ahead});
-  const auto paths = tests::roll(program, commands.batch(kStart, kPast), {.threads = 1, .level = level});
-  const double theta = kStart[0].pose.theta;
+  const RolloutProgram program(model, parameters, {.period = tests::kPeriod, .rise_x = rise, .ahead = ahead});
+  const auto paths =
+      tests::roll(program, commands.batch(tests::kStart, tests::kTurnedPast), {.threads = 1, .level = level});
+  const double theta = tests::kStart[0].pose.theta;
   double worst = 0.0;
   for (std::size_t n = 0; n < commands.rollouts; n += 5) {
     Segment segment{.start = 0.0,
-                    .end = kPeriod * static_cast<double>(commands.periods),
-                    .initial = BodyTwist{kStart[0].drive.v, 0.0, kStart[0].drive.omega}};
+                    .end = tests::kPeriod * static_cast<double>(commands.periods),
+                    .initial = BodyTwist{tests::kStart[0].drive.v, 0.0, tests::kStart[0].drive.omega}};
     segment.known = tests::measured_start(model, parameters);
     if (rise != 0.0) {
       segment.ground =
           std::make_shared<const Ground>(Grade{.rise_x = rise * std::cos(theta), .rise_y = -rise * std::sin(theta)});
     }
-    const SegmentPath path =
-        integrate_segment(model, parameters, commands.input_history(n, kPast), segment, Integrator::Exact, ahead);
-    const Pose2 end = compose(kStart[0].pose, path.poses.back());
+    const SegmentPath path = integrate_segment(model, parameters, commands.input_history(n, tests::kTurnedPast),
+                                               segment, Integrator::Exact, ahead);
+    const Pose2 end = compose(tests::kStart[0].pose, path.poses.back());
     const std::size_t i = (commands.periods - 1) * commands.rollouts + n;
     worst =
         std::max({worst, std::hypot(static_cast<double>(paths.x[i]) - end.x, static_cast<double>(paths.y[i]) - end.y),
@@ -61,8 +58,8 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
 }
 
 TEST_CASE("rollouts of 5 s over three surfaces are those of the integrator in every basis and every actuator") {
-  const tests::SampleCommands<double> commands(37, 100, kPeriod);
-  const tests::SampleCommands<float> in_float(37, 100, kPeriod);
+  const tests::SampleCommands<double> commands(37, 100, tests::kPeriod);
+  const tests::SampleCommands<float> in_float(37, 100, tests::kPeriod);
   for (const Basis& basis : {named_basis("edd-2"), named_basis("drive-9"), named_basis("thesis-15")}) {
     CAPTURE(basis.name());
     for (const tests::SampleChain& actuator : tests::sample_chains()) {
@@ -92,7 +89,7 @@ UncertainModel uncertain_model(const MotionModel& model, const MixedAhead& mixed
                           .noise = {},
                           .prior_std = Eigen::VectorXd::Ones(model.size()),
                           .ahead = mixed.directions},
-          .setting = {.period = kPeriod, .ahead = mixed.ahead}};
+          .setting = {.period = tests::kPeriod, .ahead = mixed.ahead}};
 }
 
 MixedAhead mixed_ahead() {
@@ -105,9 +102,9 @@ TEST_CASE("the covariance of rollouts is that of a prediction, and of futures dr
   const MotionModel model(named_basis("edd-2"), {});
   const MixedAhead mixed = mixed_ahead();
   const UncertainModel uncertain = uncertain_model(model, mixed);
-  const tests::SampleCommands<double> commands(2, 60, kPeriod);
+  const tests::SampleCommands<double> commands(2, 60, tests::kPeriod);
   const std::vector<RolloutStart> origin{{{}, {0.4, 0.2}}};
-  const auto batch = commands.batch(origin, kPast);
+  const auto batch = commands.batch(origin, tests::kTurnedPast);
   std::vector<double> covariance(6 * 120);
   rollout_covariance(uncertain, batch, covariance);
   const MotionPosterior posterior{model,
@@ -116,8 +113,9 @@ TEST_CASE("the covariance of rollouts is that of a prediction, and of futures dr
                                   {},
                                   Eigen::Vector3d::Ones()};
   const DisturbanceFilter still;
-  const ExpectedPose expected = predict_ahead(
-      still, posterior, {}, {.inputs = commands.input_history(0, kPast), .segment = segment_of(commands)}, mixed);
+  const ExpectedPose expected =
+      predict_ahead(still, posterior, {},
+                    {.inputs = commands.input_history(0, tests::kTurnedPast), .segment = segment_of(commands)}, mixed);
   const std::size_t last = 59 * 2;
   CHECK(covariance[last] == doctest::Approx(expected.covariance(0, 0)).epsilon(0.02));
   CHECK(covariance[120 + last] == doctest::Approx(expected.covariance(0, 1)).epsilon(0.02));
@@ -140,7 +138,8 @@ TEST_CASE("the covariance of rollouts is that of a prediction, and of futures dr
 TEST_CASE("slip ahead of other terms is refused") {
   const MotionModel model(named_basis("edd-2"), {});
   const Eigen::VectorXd parameters = Eigen::VectorXd::Zero(2);
-  CHECK_THROWS_AS(RolloutProgram(model, parameters, {.period = kPeriod, .ahead = two_edges(3)}), std::invalid_argument);
+  CHECK_THROWS_AS(RolloutProgram(model, parameters, {.period = tests::kPeriod, .ahead = two_edges(3)}),
+                  std::invalid_argument);
   UncertainModel uncertain = uncertain_model(model, mixed_ahead());
   uncertain.uncertainty.ahead.emplace_back(Eigen::MatrixXd::Zero(2, 1));
   CHECK_THROWS_AS(check_uncertainty(uncertain), std::invalid_argument);

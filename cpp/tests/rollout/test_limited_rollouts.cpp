@@ -16,9 +16,7 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPeriod = 0.05;
-const std::vector<RolloutStart> kStart{{{1.0, -2.0, 0.5}, {0.4, 0.2}}};
-const std::vector<DriveCommand> kPast{{0.5, 0.1}, {0.9, 0.0}, {-0.5, 0.6}, {0.4, 0.3}};
+const std::vector<DriveCommand> kReversedPast{{0.5, 0.1}, {0.9, 0.0}, {-0.5, 0.6}, {0.4, 0.3}};
 
 struct SampleLimits {
   const char* name;
@@ -45,8 +43,8 @@ InputHistory repeated(const InputHistory& commands, std::size_t pieces, double l
   std::vector<double> t, v, vy, omega;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const bool last = i + 1 == commands.size();
-    const double hold = last ? 2.0 * kPeriod : commands.time(i + 1) - commands.time(i);
-    const std::size_t parts = last ? 2 * pieces : hold < 2.0 * kPeriod ? pieces : 1;  // long ago it needs none
+    const double hold = last ? 2.0 * tests::kPeriod : commands.time(i + 1) - commands.time(i);
+    const std::size_t parts = last ? 2 * pieces : hold < 2.0 * tests::kPeriod ? pieces : 1;  // long ago it needs none
     for (std::size_t k = 0; k < parts; ++k) {
       t.push_back(later + commands.time(i) + hold * static_cast<double>(k) / static_cast<double>(parts));
       v.push_back(commands.sample(i).v);
@@ -77,8 +75,8 @@ struct Worst {
 template <typename Scalar>
 Worst error(const RolloutProgram& program, const MotionModel& model, Eigen::VectorXd parameters,
             const tests::SampleCommands<Scalar>& commands, InstructionLevel level) {
-  const auto paths = tests::roll(program, commands.batch(kStart, kPast), {.threads = 1, .level = level});
-  const BodyTwist drive{kStart[0].drive.v, 0.0, kStart[0].drive.omega};
+  const auto paths = tests::roll(program, commands.batch(tests::kStart, kReversedPast), {.threads = 1, .level = level});
+  const BodyTwist drive{tests::kStart[0].drive.v, 0.0, tests::kStart[0].drive.omega};
   // The integrator leaves out inputs that are stamped after the end, even pieces of a ramp that began before. So the
   // clock offset goes into the stamps, and so does a delay below zero.
   double offset = 0.0;
@@ -88,11 +86,11 @@ Worst error(const RolloutProgram& program, const MotionModel& model, Eigen::Vect
     offset = std::min(parameters.tail<2>().minCoeff(), 0.0);
     parameters.tail<2>().array() -= offset;
   }
-  const double piece = kPeriod / static_cast<double>(program.pieces());
+  const double piece = tests::kPeriod / static_cast<double>(program.pieces());
   Worst worst;
   for (std::size_t n = 0; n < commands.rollouts; n += 9) {
-    const InputHistory history = limited_inputs(repeated(commands.input_history(n, kPast), program.pieces(), offset),
-                                                program.setting().limits, piece);
+    const InputHistory history = limited_inputs(
+        repeated(commands.input_history(n, kReversedPast), program.pieces(), offset), program.setting().limits, piece);
     for (std::size_t k = commands.periods; k >= 1; k /= 3) {
       const Segment segment{.start = 0.0,
                             .end = commands.period * static_cast<double>(k),
@@ -100,7 +98,8 @@ Worst error(const RolloutProgram& program, const MotionModel& model, Eigen::Vect
                             .gx = 0.3,
                             .gy = -0.2,
                             .known = tests::measured_start(model, parameters)};
-      const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
+      const Pose2 end =
+          compose(tests::kStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
       const std::size_t i = (k - 1) * commands.rollouts + n;
       worst.xy = std::max(worst.xy,
                           std::hypot(static_cast<double>(paths.x[i]) - end.x, static_cast<double>(paths.y[i]) - end.y));
@@ -111,8 +110,8 @@ Worst error(const RolloutProgram& program, const MotionModel& model, Eigen::Vect
 }
 
 TEST_CASE("limited rollouts of 5 s are those of the plain integrator in every basis and with every actuator") {
-  const tests::SampleCommands<double> commands(37, 100, kPeriod);
-  const tests::SampleCommands<float> in_float(37, 100, kPeriod);
+  const tests::SampleCommands<double> commands(37, 100, tests::kPeriod);
+  const tests::SampleCommands<float> in_float(37, 100, tests::kPeriod);
   for (const SampleLimits& sample : sample_limits()) {
     CAPTURE(std::string(sample.name));
     for (const Basis& basis : tests::all_bases()) {
@@ -121,7 +120,7 @@ TEST_CASE("limited rollouts of 5 s are those of the plain integrator in every ba
         CAPTURE(std::string(actuator.name));
         const MotionModel model(basis, actuator.learned);
         const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
-        const RolloutProgram program(model, parameters, {kPeriod, 0.3, -0.2, sample.limits});
+        const RolloutProgram program(model, parameters, {tests::kPeriod, 0.3, -0.2, sample.limits});
         for (const InstructionLevel level : kInstructionLevels) {
           if (has_instruction_level(level)) {
             CAPTURE(name_of(level));
@@ -144,13 +143,14 @@ TEST_CASE("a limited rollout's bytes depend neither on threads nor on its neighb
   const tests::SampleChain actuator = tests::sample_chains()[3];
   const MotionModel model(named_basis("odd-even-10"), actuator.learned);
   const RolloutProgram program(model, tests::sample_parameters(model, actuator),
-                               {.period = kPeriod, .limits = sample_limits().back().limits});
-  const tests::SampleCommands<float> commands(101, 20, kPeriod);
-  const auto one = tests::roll(program, commands.batch(kStart, kPast));
+                               {.period = tests::kPeriod, .limits = sample_limits().back().limits});
+  const tests::SampleCommands<float> commands(101, 20, tests::kPeriod);
+  const auto one = tests::roll(program, commands.batch(tests::kStart, kReversedPast));
   for (const unsigned threads : {2U, 3U, 200U}) {
-    CHECK(tests::roll(program, commands.batch(kStart, kPast), {.threads = threads}) == one);
+    CHECK(tests::roll(program, commands.batch(tests::kStart, kReversedPast), {.threads = threads}) == one);
   }
-  const RolloutBatch<float> last{1, 20, {&commands.v[100], &commands.omega[100], 101, 101}, kStart, kPast};
+  const RolloutBatch<float> last{
+      1, 20, {&commands.v[100], &commands.omega[100], 101, 101}, tests::kStart, kReversedPast};
   const auto alone = tests::roll(program, last);
   CHECK(alone.x[19] == one.x[19 * 101 + 100]);
   CHECK(alone.theta[19] == one.theta[19 * 101 + 100]);
@@ -177,15 +177,16 @@ TEST_CASE("costs behind limits are those at the ends of the periods") {
 TEST_CASE("behind limits a command that is not finite is refused all the same") {
   const MotionModel model(named_basis("edd-2"), {});
   const Eigen::VectorXd parameters = tests::sample_slip(model.basis(), 31);
-  const RolloutProgram program(model, parameters, {.period = kPeriod, .limits = sample_limits().back().limits});
+  const RolloutProgram program(model, parameters, {.period = tests::kPeriod, .limits = sample_limits().back().limits});
   for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    tests::SampleCommands<float> commands(5, 4, kPeriod);
+    tests::SampleCommands<float> commands(5, 4, tests::kPeriod);
     commands.v[7] = wrong;
-    CHECK_THROWS_WITH_AS(tests::roll(program, commands.batch(kStart)),
+    CHECK_THROWS_WITH_AS(tests::roll(program, commands.batch(tests::kStart)),
                          "the command of rollout 2 over period 1 is not finite", std::invalid_argument);
   }
-  CHECK_THROWS_AS(RolloutProgram(model, parameters, {.period = kPeriod, .limits = {.speed = {.saturation = -1.0}}}),
-                  std::invalid_argument);
+  CHECK_THROWS_AS(
+      RolloutProgram(model, parameters, {.period = tests::kPeriod, .limits = {.speed = {.saturation = -1.0}}}),
+      std::invalid_argument);
 }
 
 }  // namespace

@@ -16,15 +16,11 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPeriod = 0.05;
-const std::vector<RolloutStart> kStart{{{1.0, -2.0, 0.5}, {0.4, 0.2}}};
-const std::vector<DriveCommand> kPast{{0.5, 0.1}, {0.6, 0.0}, {0.5, 0.2}, {0.4, 0.3}};
-
 /// Largest difference of position and heading to the integrator over some rollouts and periods.
 template <typename Scalar>
 double error(const MotionModel& model, const Eigen::VectorXd& parameters, const tests::SampleCommands<Scalar>& commands,
-             InstructionLevel level, const std::vector<RolloutStart>& start = kStart,
-             const std::vector<DriveCommand>& past = kPast) {
+             InstructionLevel level, const std::vector<RolloutStart>& start = tests::kStart,
+             const std::vector<DriveCommand>& past = tests::kPast) {
   const RolloutProgram program(model, parameters, {commands.period, 0.3, -0.2});
   const auto paths = tests::roll(program, commands.batch(start, past), {.threads = 1, .level = level});
   const BodyTwist drive{start[0].drive.v, 0.0, start[0].drive.omega};
@@ -40,7 +36,8 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
                             .gx = 0.3,
                             .gy = -0.2,
                             .known = tests::measured_start(model, parameters)};
-      const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
+      const Pose2 end =
+          compose(tests::kStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
       const std::size_t i = (k - 1) * commands.rollouts + n;
       worst =
           std::max({worst, std::hypot(static_cast<double>(paths.x[i]) - end.x, static_cast<double>(paths.y[i]) - end.y),
@@ -57,8 +54,8 @@ std::vector<Basis> bases_and_their_union() {
 }
 
 TEST_CASE("rollouts of 5 s are those of the plain integrator in every basis and with every actuator") {
-  const tests::SampleCommands<double> commands(37, 100, kPeriod);
-  const tests::SampleCommands<float> in_float(37, 100, kPeriod);
+  const tests::SampleCommands<double> commands(37, 100, tests::kPeriod);
+  const tests::SampleCommands<float> in_float(37, 100, tests::kPeriod);
   for (const Basis& basis : bases_and_their_union()) {
     CAPTURE(basis.name());
     for (const tests::SampleChain& actuator : tests::sample_chains()) {
@@ -82,12 +79,12 @@ TEST_CASE("rollouts of 5 s are those of the plain integrator in every basis and 
 TEST_CASE(
     "rollouts of a drive that steers are those of the plain integrator, whether it is fast at the start or slow") {
   const std::vector<RolloutStart> slow{{{1.0, -2.0, 0.5}, {0.04, 0.3}}};
-  tests::SampleCommands<double> commands(37, 100, kPeriod);
+  tests::SampleCommands<double> commands(37, 100, tests::kPeriod);
   for (std::size_t i = 5; i < commands.v.size(); i += 37) {  // some stand now and then, with straight or turned wheels
     commands.v[i] = i % 3 == 0 ? 0.0 : i % 3 == 1 ? kStandingSpeed : commands.v[i];
     commands.omega[i] *= i % 3 == 1 ? kStandingSpeed : 1.0;
   }
-  tests::SampleCommands<float> in_float(37, 100, kPeriod);
+  tests::SampleCommands<float> in_float(37, 100, tests::kPeriod);
   std::ranges::transform(commands.v, in_float.v.begin(), [](double v) { return static_cast<float>(v); });
   std::ranges::transform(commands.omega, in_float.omega.begin(), [](double v) { return static_cast<float>(v); });
   for (const Basis& basis : {named_basis("edd-2"), named_basis("odd-even-10")}) {
@@ -96,7 +93,7 @@ TEST_CASE(
       const MotionModel model(basis, actuator.learned);
       const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
       for (const InstructionLevel level : kInstructionLevels) {
-        for (const auto& start : {kStart, slow}) {
+        for (const auto& start : {tests::kStart, slow}) {
           if (has_instruction_level(level)) {
             CAPTURE(name_of(level));
             CHECK(error(model, parameters, commands, level, start) < 1e-9);
@@ -114,13 +111,13 @@ TEST_CASE(
 TEST_CASE("a drive that steers has neither limits of yaw rates nor a sideways speed") {
   const MotionModel model(named_basis("edd-2"), {.wheelbase = 0.4});
   const Eigen::Vector2d slip(0.1, -0.1);
-  CHECK_THROWS_AS(RolloutProgram(model, slip, {.period = kPeriod, .limits = {.speed = {.saturation = 1.0}}}),
+  CHECK_THROWS_AS(RolloutProgram(model, slip, {.period = tests::kPeriod, .limits = {.speed = {.saturation = 1.0}}}),
                   std::invalid_argument);
-  CHECK_THROWS_AS(RolloutProgram(model, slip, {.period = kPeriod, .sideways = true}), std::invalid_argument);
-  RolloutBatch<double> batch = tests::SampleCommands<double>(1, 1, kPeriod).batch(kStart);
+  CHECK_THROWS_AS(RolloutProgram(model, slip, {.period = tests::kPeriod, .sideways = true}), std::invalid_argument);
+  RolloutBatch<double> batch = tests::SampleCommands<double>(1, 1, tests::kPeriod).batch(tests::kStart);
   const double standing = 0.0, unknown = std::nan("");
   batch.commands = {&standing, &unknown, 1, 1};
-  CHECK_THROWS_AS(tests::roll(RolloutProgram(model, slip, {kPeriod}), batch), std::invalid_argument);
+  CHECK_THROWS_AS(tests::roll(RolloutProgram(model, slip, {tests::kPeriod}), batch), std::invalid_argument);
 }
 
 TEST_CASE("periods so long that a robot turns round within them are exact as well") {
@@ -137,11 +134,11 @@ TEST_CASE("periods so long that a robot turns round within them are exact as wel
 TEST_CASE("a rollout's bytes depend neither on threads nor on how the commands lie") {
   const tests::SampleChain actuator = tests::sample_chains()[3];
   const MotionModel model(named_basis("odd-even-10"), actuator.learned);
-  const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod});
-  const tests::SampleCommands<float> commands(101, 20, kPeriod);
-  const auto one = tests::roll(program, commands.batch(kStart, kPast));
+  const RolloutProgram program(model, tests::sample_parameters(model, actuator), {tests::kPeriod});
+  const tests::SampleCommands<float> commands(101, 20, tests::kPeriod);
+  const auto one = tests::roll(program, commands.batch(tests::kStart, tests::kPast));
   for (const unsigned threads : {2U, 3U, 200U}) {
-    CHECK(tests::roll(program, commands.batch(kStart, kPast), {.threads = threads}) == one);
+    CHECK(tests::roll(program, commands.batch(tests::kStart, tests::kPast), {.threads = threads}) == one);
   }
   std::vector<float> rows(2 * 101 * 20);
   for (std::size_t n = 0; n < 101; ++n) {
@@ -150,7 +147,7 @@ TEST_CASE("a rollout's bytes depend neither on threads nor on how the commands l
       rows[2 * (n * 20 + k) + 1] = commands.omega[k * 101 + n];
     }
   }
-  RolloutBatch<float> batch = commands.batch(kStart, kPast);
+  RolloutBatch<float> batch = commands.batch(tests::kStart, tests::kPast);
   batch.commands = {rows.data(), rows.data() + 1, 40, 2};
   CHECK(tests::roll(program, batch) == one);
 }
@@ -158,8 +155,8 @@ TEST_CASE("a rollout's bytes depend neither on threads nor on how the commands l
 TEST_CASE("every rollout may have a start of its own") {
   const tests::SampleChain actuator = tests::sample_chains()[3];
   const MotionModel model(named_basis("edd-2"), actuator.learned);
-  const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod});
-  const tests::SampleCommands<double> commands(40, 10, kPeriod);
+  const RolloutProgram program(model, tests::sample_parameters(model, actuator), {tests::kPeriod});
+  const tests::SampleCommands<double> commands(40, 10, tests::kPeriod);
   std::vector<RolloutStart> starts;
   std::vector<DriveCommand> past;
   for (std::size_t n = 0; n < 40; ++n) {
@@ -185,20 +182,20 @@ TEST_CASE("without commands before the start a drive with a slow mode is taken t
   const tests::SampleChain actuator = tests::sample_chains()[6];
   const MotionModel model(Basis("none", {}, {}, {}), actuator.learned);
   const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
-  const RolloutProgram program(model, parameters, {kPeriod});
+  const RolloutProgram program(model, parameters, {tests::kPeriod});
   const double gain = model.actuator(parameters).gain_v;
   const std::vector<double> v(40, 0.5), omega(40, 0.0);
   const std::vector<RolloutStart> settled{{{}, {0.5 * gain, 0.0}}};
   const RolloutBatch<double> batch{1, 40, {v.data(), omega.data(), 1, 1}, settled};
-  CHECK(tests::roll(program, batch).x[39] == doctest::Approx(0.5 * gain * 40 * kPeriod));
+  CHECK(tests::roll(program, batch).x[39] == doctest::Approx(0.5 * gain * 40 * tests::kPeriod));
 }
 
 TEST_CASE("last poses and costs are those along the path") {
   const tests::SampleChain actuator = tests::sample_chains()[3];
   const MotionModel model(named_basis("thesis-15"), actuator.learned);
-  const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod});
-  const tests::SampleCommands<double> commands(21, 30, kPeriod);
-  const auto path = tests::roll(program, commands.batch(kStart, kPast));
+  const RolloutProgram program(model, tests::sample_parameters(model, actuator), {tests::kPeriod});
+  const tests::SampleCommands<double> commands(21, 30, tests::kPeriod);
+  const auto path = tests::roll(program, commands.batch(tests::kStart, tests::kPast));
   std::vector<float> cells;
   for (int i = 0; i < 60; ++i) {
     cells.push_back(static_cast<float>(i % 7));
@@ -212,7 +209,7 @@ TEST_CASE("last poses and costs are those along the path") {
                                  .cost_sum = sum.data(),
                                  .cost_highest = highest.data(),
                                  .cost_lowest = lowest.data()};
-  rollout_batch(program, commands.batch(kStart, kPast), outputs);
+  rollout_batch(program, commands.batch(tests::kStart, tests::kPast), outputs);
   RolloutOutputs<double> end_alone{.end_x = end_y.data()};
   for (std::size_t n = 0; n < 21; ++n) {
     double expected_sum = 0.0, expected_highest = -1.0, expected_lowest = 1e9;
@@ -232,14 +229,15 @@ TEST_CASE("last poses and costs are those along the path") {
     CHECK(highest[n] == expected_highest);
     CHECK(lowest[n] == expected_lowest);
   }
-  rollout_batch(program, commands.batch(kStart, kPast), end_alone);  // takes fewer steps: none for poses on the way
+  rollout_batch(program, commands.batch(tests::kStart, tests::kPast),
+                end_alone);  // takes fewer steps: none for poses on the way
   CHECK(end_y == end_x);
 }
 
 TEST_CASE("far from the origin nothing but the last digit is lost") {
   const MotionModel model(named_basis("edd-2"), {});
-  const RolloutProgram program(model, tests::sample_slip(model.basis(), 31), {kPeriod});
-  const tests::SampleCommands<float> commands(5, 100, kPeriod);
+  const RolloutProgram program(model, tests::sample_slip(model.basis(), 31), {tests::kPeriod});
+  const tests::SampleCommands<float> commands(5, 100, tests::kPeriod);
   const std::vector<RolloutStart> near{{{0.0, 0.0, 0.3}, {}}};
   const std::vector<RolloutStart> far{{{4096.0, 0.0, 0.3}, {}}};
   const auto at_origin = tests::roll(program, commands.batch(near));
@@ -262,9 +260,9 @@ TEST_CASE("what cannot be rolled out is refused and named") {
   const tests::SampleChain actuator = tests::sample_chains()[3];
   const MotionModel model(named_basis("edd-2"), actuator.learned);
   const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
-  const RolloutProgram program(model, parameters, {kPeriod});
-  tests::SampleCommands<double> commands(3, 10, kPeriod);
-  const auto batch = commands.batch(kStart);
+  const RolloutProgram program(model, parameters, {tests::kPeriod});
+  tests::SampleCommands<double> commands(3, 10, tests::kPeriod);
+  const auto batch = commands.batch(tests::kStart);
   CHECK(refusal(program, batch).empty());
   auto empty = batch;
   empty.rollouts = 0;
@@ -285,9 +283,9 @@ TEST_CASE("what cannot be rolled out is refused and named") {
   for (const double period : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
     CHECK_THROWS_AS(RolloutProgram(model, parameters, {period}), std::invalid_argument);
   }
-  CHECK_THROWS_AS(RolloutProgram(model, parameters, {kPeriod, std::numeric_limits<double>::quiet_NaN(), 0.0}),
+  CHECK_THROWS_AS(RolloutProgram(model, parameters, {tests::kPeriod, std::numeric_limits<double>::quiet_NaN(), 0.0}),
                   std::invalid_argument);
-  CHECK_THROWS_AS(RolloutProgram(model, parameters.head(2), {kPeriod}), std::invalid_argument);
+  CHECK_THROWS_AS(RolloutProgram(model, parameters.head(2), {tests::kPeriod}), std::invalid_argument);
   std::vector<std::string> many, none;
   for (int i = 0; i < 64; ++i) {
     many.push_back("V^" + std::to_string(1 + i / 8) + "*w^" + std::to_string(1 + i % 8));
@@ -295,7 +293,7 @@ TEST_CASE("what cannot be rolled out is refused and named") {
   const Basis windy = with_force(named_basis("edd-2"), ForceFrame::World);  // rollouts know no heading on the map
   for (const Basis& basis : {Basis("more products than a kernel has room for", many, none, none), windy}) {
     const Eigen::VectorXd slip = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(basis.size()), 0.01);
-    CHECK_THROWS_AS(RolloutProgram(MotionModel(basis, {}), slip, {kPeriod}), std::invalid_argument);
+    CHECK_THROWS_AS(RolloutProgram(MotionModel(basis, {}), slip, {tests::kPeriod}), std::invalid_argument);
   }
 }
 

@@ -16,7 +16,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPeriod = 0.05;
 const std::vector<RolloutStart> kOrigin{{{}, {0.4, 0.2}}};
 
 UncertainModel sample_model(const MotionModel& model, const tests::SampleChain& actuator) {
@@ -31,7 +30,7 @@ UncertainModel sample_model(const MotionModel& model, const tests::SampleChain& 
            .inflation = 1.2,
            .disturbance = {{{0.0, 0.0, 1.0}, {0.1, 0.3, 0.8}, {0.3, 0.0, 20.0}}, Eigen::Vector3d(0.2, 0.5, 0.3)},
            .prior_std = Eigen::VectorXd::Constant(model.size(), 0.2)},
-          {kPeriod}};
+          {tests::kPeriod}};
 }
 
 Eigen::MatrixXd covariance_at(const UncertainModel& model, double seconds) {
@@ -45,7 +44,7 @@ Eigen::Matrix3d matrix_at(const std::vector<double>& entries, std::size_t poses,
 }
 
 TEST_CASE("the covariance of a pose is that of its segment in every basis") {
-  const tests::SampleCommands<double> all(4, 60, kPeriod);
+  const tests::SampleCommands<double> all(4, 60, tests::kPeriod);
   const std::vector<DriveCommand> past{{0.5, 0.1}, {0.4, 0.2}, {0.3, 0.2}, {0.4, 0.2}};
   for (const Basis& basis : tests::all_bases()) {
     CAPTURE(basis.name());
@@ -58,7 +57,7 @@ TEST_CASE("the covariance of a pose is that of its segment in every basis") {
       std::vector<double> entries(6 * 4 * 60);
       rollout_covariance(uncertain, commands.batch(kOrigin, past), entries);
       for (std::size_t n = 0; n < 4; ++n) {
-        const Segment segment{.start = 0.0, .end = 60 * kPeriod, .initial = BodyTwist{0.4, 0.0, 0.2}};
+        const Segment segment{.start = 0.0, .end = 60 * tests::kPeriod, .initial = BodyTwist{0.4, 0.0, 0.2}};
         const auto at = linearize_segment(model, uncertain.parameters, commands.input_history(n, past), segment);
         const Eigen::Matrix3d root = uncertain.uncertainty.scale.cwiseSqrt().asDiagonal();
         const Eigen::Matrix3d from_parameters =
@@ -73,7 +72,7 @@ TEST_CASE("the covariance of a pose is that of its segment in every basis") {
 }
 
 TEST_CASE("without noise the parameters' fraction is exact") {
-  const tests::SampleCommands<double> commands(3, 40, kPeriod);
+  const tests::SampleCommands<double> commands(3, 40, tests::kPeriod);
   const tests::SampleChain actuator = tests::sample_chains()[0];
   const MotionModel model(named_basis("odd-even-10"), actuator.learned);
   UncertainModel uncertain = sample_model(model, actuator);
@@ -83,9 +82,9 @@ TEST_CASE("without noise the parameters' fraction is exact") {
   rollout_covariance(uncertain, commands.batch(kOrigin), entries);
   for (std::size_t n = 0; n < 3; ++n) {
     const auto at = linearize_segment(model, uncertain.parameters, commands.input_history(n, {}),
-                                      {.start = 0.0, .end = 40 * kPeriod});
+                                      {.start = 0.0, .end = 40 * tests::kPeriod});
     const Eigen::Matrix3d expected =
-        at.by_parameter * covariance_at(uncertain, 40 * kPeriod) * at.by_parameter.transpose();
+        at.by_parameter * covariance_at(uncertain, 40 * tests::kPeriod) * at.by_parameter.transpose();
     CHECK((matrix_at(entries, 3 * 40, 39 * 3 + n) - expected).norm() < 1e-12 * expected.norm());
   }
 }
@@ -98,8 +97,8 @@ TEST_CASE("covariances in float lose no digits far from the origin") {
   const std::size_t poses = std::size_t{4} * 60;
   std::vector<double> wanted(6 * poses);
   std::vector<float> found(6 * poses);
-  rollout_covariance(uncertain, tests::SampleCommands<double>(4, 60, kPeriod).batch(far), wanted);
-  rollout_covariance(uncertain, tests::SampleCommands<float>(4, 60, kPeriod).batch(far), found);
+  rollout_covariance(uncertain, tests::SampleCommands<double>(4, 60, tests::kPeriod).batch(far), wanted);
+  rollout_covariance(uncertain, tests::SampleCommands<float>(4, 60, tests::kPeriod).batch(far), found);
   const std::vector<double> in_double(found.begin(), found.end());
   for (std::size_t i = 0; i < poses; ++i) {
     const Eigen::Matrix3d expected = matrix_at(wanted, poses, i);
@@ -109,7 +108,7 @@ TEST_CASE("covariances in float lose no digits far from the origin") {
 
 TEST_CASE("sampled futures scatter as the covariance says, from the same seed in the same way") {
   const std::size_t samples = 2000;
-  const tests::SampleCommands<double> commands(2, 30, kPeriod);
+  const tests::SampleCommands<double> commands(2, 30, tests::kPeriod);
   const tests::SampleChain actuator = tests::sample_chains()[3];
   const MotionModel model(named_basis("full-linear-6"), actuator.learned);
   UncertainModel uncertain = sample_model(model, actuator);
@@ -144,7 +143,7 @@ TEST_CASE("sampled futures scatter as the covariance says, from the same seed in
 }
 
 TEST_CASE("an uncertainty that does not fit is refused") {
-  const tests::SampleCommands<double> commands(2, 3, kPeriod);
+  const tests::SampleCommands<double> commands(2, 3, tests::kPeriod);
   const tests::SampleChain actuator = tests::sample_chains()[0];
   const MotionModel model(named_basis("edd-2"), actuator.learned);
   UncertainModel uncertain = sample_model(model, actuator);

@@ -15,7 +15,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPeriod = 0.05;
 constexpr double kStep = 1e-4;
 constexpr std::size_t kRollouts = 5, kPeriods = 40, kPoses = kRollouts * kPeriods;
 
@@ -33,20 +32,20 @@ std::vector<Situation> situations(Eigen::Index slip) {
       .edges = {0.31, 0.87},
       .changes = {Eigen::VectorXd::LinSpaced(slip, -0.05, 0.05), Eigen::VectorXd::LinSpaced(slip, 0.1, -0.1)}};
   const auto with = [](const auto& change) {
-    RolloutSetting setting{.period = kPeriod};
+    RolloutSetting setting{.period = tests::kPeriod};
     change(setting);
     return setting;
   };
-  return {{"level", {.period = kPeriod}},
-          {"nothing sent before", {.period = kPeriod}, false},
-          {"gravity along the robot", {.period = kPeriod, .gx = 0.7, .gy = -0.4}},
+  return {{"level", {.period = tests::kPeriod}},
+          {"nothing sent before", {.period = tests::kPeriod}, false},
+          {"gravity along the robot", {.period = tests::kPeriod, .gx = 0.7, .gy = -0.4}},
           {"a grade", with([](RolloutSetting& s) { s.rise_x = 0.2, s.rise_y = -0.15; })},
           {"edges", with([&](RolloutSetting& s) { s.ahead = ahead; })},
           {"edges on a grade", with([&](RolloutSetting& s) { s.ahead = ahead, s.rise_y = 0.2; })},
           {"saturation and ramps", with([&](RolloutSetting& s) { s.limits = {.speed = axis, .yaw_rate = axis}; })},
           {"limits of the sides", with([&](RolloutSetting& s) { s.limits = {.side = axis, .wheel_separation = 0.5}; })},
-          {"steering", {.period = kPeriod}, true, 0.5},
-          {"steering, nothing sent before", {.period = kPeriod}, false, 0.5},
+          {"steering", {.period = tests::kPeriod}, true, 0.5},
+          {"steering, nothing sent before", {.period = tests::kPeriod}, false, 0.5},
           {"sideways", with([](RolloutSetting& s) { s.sideways = true; })}};
 }
 
@@ -139,7 +138,7 @@ void check(const Basis& basis, const tests::SampleChain& actuator, const Situati
   UncertainModel beside = uncertain;
   beside.parameters = beside_boundaries(model, actuator, parameters);
   const bool sideways = basis.sideways() || situation.setting.sideways;
-  const tests::SampleCommands<double> plain(kRollouts, kPeriods, kPeriod);
+  const tests::SampleCommands<double> plain(kRollouts, kPeriods, tests::kPeriod);
   const tests::SampleCommands<double> commands = sideways ? plain.sideways() : plain;
   std::vector<RolloutStart> starts;
   std::vector<DriveCommand> past;
@@ -150,7 +149,7 @@ void check(const Basis& basis, const tests::SampleChain& actuator, const Situati
   }
   const auto batch =
       commands.batch(starts, situation.past ? std::span<const DriveCommand>(past) : std::span<const DriveCommand>());
-  tests::SampleCommands<float> few_digits(kRollouts, kPeriods, kPeriod);
+  tests::SampleCommands<float> few_digits(kRollouts, kPeriods, tests::kPeriod);
   few_digits = sideways ? few_digits.sideways() : few_digits;
   const RolloutBatch<float> with_few_digits = few_digits.batch(batch.starts, batch.past);
   const std::vector<double> wanted = differences(beside, batch);
@@ -184,9 +183,9 @@ TEST_CASE("tangents are central differences, in every basis, through every actua
 
 TEST_CASE("a step that turns by more than the plain series reaches has tangents") {
   const MotionModel model(named_basis("odd-even-10"), {});
-  const RolloutSetting setting{.period = kPeriod};
+  const RolloutSetting setting{.period = tests::kPeriod};
   const UncertainModel uncertain{model, tests::sample_slip(model.basis(), 31), uncertainty_of(model, setting), setting};
-  const tests::SampleCommands<double> commands(kRollouts, kPeriods, kPeriod, 25.0);
+  const tests::SampleCommands<double> commands(kRollouts, kPeriods, tests::kPeriod, 25.0);
   const std::vector<RolloutStart> start{{{}, {0.4, 0.2}}};
   const auto batch = commands.batch(start);
   std::vector<double> found(6 * kPoses);

@@ -18,8 +18,8 @@ const MotionModel& sample_motion() {
   return model;
 }
 
-constexpr std::size_t kRollouts = 3, kPeriods = 12;
-const std::array<RolloutStart, 1> kStart{{{.pose = {.x = 1.0, .y = 2.0, .theta = 0.5}, .drive = {}}}};
+constexpr std::size_t kFutures = 3, kFuturePeriods = 12;
+const std::array<RolloutStart, 1> kOneStart{{{.pose = {.x = 1.0, .y = 2.0, .theta = 0.5}, .drive = {}}}};
 
 UncertainModel sample(double std) {
   return {.model = sample_motion(),
@@ -30,22 +30,22 @@ UncertainModel sample(double std) {
 
 struct Futures {
   std::vector<double> x, y, theta;
-  explicit Futures(std::size_t samples) : x(samples * kPeriods * kRollouts), y(x.size()), theta(x.size()) {}
+  explicit Futures(std::size_t samples) : x(samples * kFuturePeriods * kFutures), y(x.size()), theta(x.size()) {}
   bool operator==(const Futures&) const = default;
 };
 
 Futures draw(const UncertainModel& model, std::size_t samples, std::uint64_t seed, unsigned threads = 1) {
-  const tests::SampleCommands<double> commands(kRollouts, kPeriods, 0.1);
+  const tests::SampleCommands<double> commands(kFutures, kFuturePeriods, 0.1);
   Futures futures(samples);
-  sample_futures(model, commands.batch(kStart), seed, {futures.x, futures.y, futures.theta}, {.threads = threads});
+  sample_futures(model, commands.batch(kOneStart), seed, {futures.x, futures.y, futures.theta}, {.threads = threads});
   return futures;
 }
 
 TEST_CASE("a model that is sure drives its one path in every sample") {
-  const tests::SampleCommands<double> commands(kRollouts, kPeriods, 0.1);
+  const tests::SampleCommands<double> commands(kFutures, kFuturePeriods, 0.1);
   const UncertainModel model = sample(0.0);
   const auto path =
-      tests::roll(RolloutProgram(sample_motion(), model.parameters, model.setting), commands.batch(kStart));
+      tests::roll(RolloutProgram(sample_motion(), model.parameters, model.setting), commands.batch(kOneStart));
   const Futures futures = draw(model, 2, 7);
   for (std::size_t i = 0; i < futures.x.size(); ++i) {
     CHECK(futures.x[i] == doctest::Approx(path.x[i % path.x.size()]).epsilon(1e-9));
@@ -59,9 +59,9 @@ TEST_CASE("futures in float are those in double, from the same random numbers") 
   model.uncertainty.noise = {
       .psd_time = {1e-4, 1e-4, 1e-4}, .psd_motion = {1e-3, 1e-3, 1e-3}, .fraction = {0.1, 0.1, 0.1}};
   const Futures wanted = draw(model, 5, 7);
-  const tests::SampleCommands<float> commands(kRollouts, kPeriods, 0.1);
+  const tests::SampleCommands<float> commands(kFutures, kFuturePeriods, 0.1);
   std::vector<float> x(wanted.x.size()), y(x.size()), theta(x.size());
-  sample_futures(model, commands.batch(kStart), 7, {x, y, theta});
+  sample_futures(model, commands.batch(kOneStart), 7, {x, y, theta});
   for (std::size_t i = 0; i < x.size(); ++i) {
     CHECK(std::abs(static_cast<double>(x[i]) - wanted.x[i]) < 1e-5);
     CHECK(std::abs(static_cast<double>(y[i]) - wanted.y[i]) < 1e-5);
@@ -98,19 +98,19 @@ TEST_CASE("white slip noise scatters the yaw by its sum over the periods") {
   const Futures futures = draw(model, kSamples, 3);
   double sum = 0.0, squares = 0.0;
   for (std::size_t s = 0; s < kSamples; ++s) {
-    const double yaw = futures.theta[(s + 1) * kPeriods * kRollouts - 1];  // of the last rollout at the end
+    const double yaw = futures.theta[(s + 1) * kFuturePeriods * kFutures - 1];  // of the last rollout at the end
     sum += yaw;
     squares += yaw * yaw;
   }
   const double variance = squares / kSamples - sum * sum / kSamples / kSamples;
-  CHECK(variance == doctest::Approx(0.04 * 0.1 * kPeriods).epsilon(5.0 * std::sqrt(2.0 / kSamples)));
+  CHECK(variance == doctest::Approx(0.04 * 0.1 * kFuturePeriods).epsilon(5.0 * std::sqrt(2.0 / kSamples)));
 }
 
 TEST_CASE("no sample at all, or room that does not fit, is refused") {
-  const tests::SampleCommands<double> commands(kRollouts, kPeriods, 0.1);
-  std::vector<double> x(kPeriods * kRollouts), few(kPeriods), none;
+  const tests::SampleCommands<double> commands(kFutures, kFuturePeriods, 0.1);
+  std::vector<double> x(kFuturePeriods * kFutures), few(kFuturePeriods), none;
   const auto draw_into = [&](std::vector<double>& a, std::vector<double>& b) {
-    sample_futures(sample(0.1), commands.batch(kStart), 1, {a, b, a});
+    sample_futures(sample(0.1), commands.batch(kOneStart), 1, {a, b, a});
   };
   CHECK_NOTHROW(draw_into(x, x));
   CHECK_THROWS_AS(draw_into(x, few), std::invalid_argument);

@@ -15,9 +15,8 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPeriod = 0.05;
-const std::vector<RolloutStart> kStart{{{1.0, -2.0, 0.5}, {0.4, 0.2, -0.3}}};
-const std::vector<DriveCommand> kPast{{0.5, 0.1, 0.2}, {0.6, 0.0, -0.4}, {0.0, 0.2, 0.3}, {0.4, 0.3, -0.1}};
+const std::vector<RolloutStart> kSidewaysStart{{{1.0, -2.0, 0.5}, {0.4, 0.2, -0.3}}};
+const std::vector<DriveCommand> kSidewaysPast{{0.5, 0.1, 0.2}, {0.6, 0.0, -0.4}, {0.0, 0.2, 0.3}, {0.4, 0.3, -0.1}};
 
 /// With terms of a sideways speed, alone and mixed with others.
 Basis omni_basis() {
@@ -45,18 +44,20 @@ Eigen::VectorXd mirrored(const MotionModel& model, Eigen::VectorXd parameters) {
 template <typename Scalar>
 double error(const MotionModel& model, const Eigen::VectorXd& parameters, const CommandLimits& limits,
              InstructionLevel level) {
-  const tests::SampleCommands<Scalar> commands = tests::SampleCommands<Scalar>(37, 60, kPeriod).sideways();
-  const RolloutProgram program(model, parameters, {.period = kPeriod, .limits = limits, .sideways = true});
-  const auto paths = tests::roll(program, commands.batch(kStart, kPast), {.threads = 1, .level = level});
-  const BodyTwist drive{kStart[0].drive.v, kStart[0].drive.vy, kStart[0].drive.omega};
+  const tests::SampleCommands<Scalar> commands = tests::SampleCommands<Scalar>(37, 60, tests::kPeriod).sideways();
+  const RolloutProgram program(model, parameters, {.period = tests::kPeriod, .limits = limits, .sideways = true});
+  const auto paths =
+      tests::roll(program, commands.batch(kSidewaysStart, kSidewaysPast), {.threads = 1, .level = level});
+  const BodyTwist drive{kSidewaysStart[0].drive.v, kSidewaysStart[0].drive.vy, kSidewaysStart[0].drive.omega};
   double worst = 0.0;
   for (std::size_t n = 0; n < commands.rollouts; n += 3) {
-    const InputHistory history = limited_inputs(commands.input_history(n, kPast), limits, kRampPiece);
+    const InputHistory history = limited_inputs(commands.input_history(n, kSidewaysPast), limits, kRampPiece);
     const Segment segment{.start = 0.0,
-                          .end = kPeriod * static_cast<double>(commands.periods),
+                          .end = tests::kPeriod * static_cast<double>(commands.periods),
                           .initial = drive,
                           .known = tests::measured_start(model, parameters)};
-    const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
+    const Pose2 end =
+        compose(kSidewaysStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
     const std::size_t i = (commands.periods - 1) * commands.rollouts + n;
     worst =
         std::max({worst, std::hypot(static_cast<double>(paths.x[i]) - end.x, static_cast<double>(paths.y[i]) - end.y),
@@ -87,7 +88,7 @@ TEST_CASE("sideways rollouts are those of the plain integrator with every actuat
 }
 
 TEST_CASE("what mirrors left and right mirrors sideways rollouts") {
-  const tests::SampleCommands<double> commands = tests::SampleCommands<double>(16, 40, kPeriod).sideways();
+  const tests::SampleCommands<double> commands = tests::SampleCommands<double>(16, 40, tests::kPeriod).sideways();
   tests::SampleCommands<double> other = commands;
   const std::vector<RolloutStart> at_rest{{}};
   for (std::size_t i = 0; i < other.v.size(); ++i) {
@@ -98,8 +99,8 @@ TEST_CASE("what mirrors left and right mirrors sideways rollouts") {
     CAPTURE(std::string(actuator.name));
     const MotionModel model(omni_basis(), actuator.learned);
     const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
-    const RolloutProgram program(model, parameters, {.period = kPeriod});
-    const RolloutProgram mirror(model, mirrored(model, parameters), {.period = kPeriod});
+    const RolloutProgram program(model, parameters, {.period = tests::kPeriod});
+    const RolloutProgram mirror(model, mirrored(model, parameters), {.period = tests::kPeriod});
     const auto paths = tests::roll(program, commands.batch(at_rest));
     const auto seen = tests::roll(mirror, other.batch(at_rest));
     double worst = 0.0;
@@ -114,10 +115,10 @@ TEST_CASE("what mirrors left and right mirrors sideways rollouts") {
 TEST_CASE("zero commands give zero motion, and a period that is split in two gives the same path") {
   const MotionModel model(omni_basis(), {});
   const Eigen::VectorXd parameters = tests::sample_slip(model.basis(), 31);
-  const RolloutProgram whole(model, parameters, {.period = kPeriod}),
-      half(model, parameters, {.period = 0.5 * kPeriod});
+  const RolloutProgram whole(model, parameters, {.period = tests::kPeriod}),
+      half(model, parameters, {.period = 0.5 * tests::kPeriod});
   const std::vector<RolloutStart> at_rest{{}};
-  const tests::SampleCommands<double> commands = tests::SampleCommands<double>(16, 20, kPeriod).sideways();
+  const tests::SampleCommands<double> commands = tests::SampleCommands<double>(16, 20, tests::kPeriod).sideways();
   tests::SampleCommands<double> none = commands, split = commands;
   for (auto* column : {&none.v, &none.omega, &none.vy}) {
     std::ranges::fill(*column, 0.0);
@@ -144,8 +145,8 @@ TEST_CASE("zero commands give zero motion, and a period that is split in two giv
 TEST_CASE("columns of velocities follow the sideways speed") {
   const MotionModel model(omni_basis(), {});
   const Eigen::VectorXd parameters = tests::sample_slip(model.basis(), 31);
-  const RolloutProgram program(model, parameters, {.period = kPeriod});
-  const tests::SampleCommands<float> commands = tests::SampleCommands<float>(40, 3, kPeriod).sideways();
+  const RolloutProgram program(model, parameters, {.period = tests::kPeriod});
+  const tests::SampleCommands<float> commands = tests::SampleCommands<float>(40, 3, tests::kPeriod).sideways();
   std::vector<float> vx(commands.v.size()), vy(commands.v.size()), wz(commands.v.size());
   planning::predict_columns(
       program,
@@ -153,16 +154,18 @@ TEST_CASE("columns of velocities follow the sideways speed") {
       {}, {.vx = vx.data(), .vy = vy.data(), .wz = wz.data()});
   const auto paths = tests::roll(program, commands.batch(std::vector<RolloutStart>{{}}));
   for (std::size_t n = 0; n < 40; ++n) {
-    CHECK(static_cast<double>(vx[n]) * kPeriod == doctest::Approx(static_cast<double>(paths.x[n])).epsilon(1e-4));
-    CHECK(static_cast<double>(vy[n]) * kPeriod == doctest::Approx(static_cast<double>(paths.y[n])).epsilon(1e-4));
+    CHECK(static_cast<double>(vx[n]) * tests::kPeriod ==
+          doctest::Approx(static_cast<double>(paths.x[n])).epsilon(1e-4));
+    CHECK(static_cast<double>(vy[n]) * tests::kPeriod ==
+          doctest::Approx(static_cast<double>(paths.y[n])).epsilon(1e-4));
   }
 }
 
 TEST_CASE("a sideways speed that the model does not take, or misses, is refused and never dropped") {
   const MotionModel plain(named_basis("edd-2"), {}), omni(omni_basis(), {});
-  const RolloutProgram two(plain, tests::sample_slip(plain.basis(), 3), {.period = kPeriod});
-  const RolloutProgram three(omni, tests::sample_slip(omni.basis(), 3), {.period = kPeriod});
-  const tests::SampleCommands<double> ahead(4, 5, kPeriod), aside = ahead.sideways();
+  const RolloutProgram two(plain, tests::sample_slip(plain.basis(), 3), {.period = tests::kPeriod});
+  const RolloutProgram three(omni, tests::sample_slip(omni.basis(), 3), {.period = tests::kPeriod});
+  const tests::SampleCommands<double> ahead(4, 5, tests::kPeriod), aside = ahead.sideways();
   const std::vector<RolloutStart> at_rest{{}}, gliding{{{}, {.vy = 0.1}}};
   CHECK_THROWS_WITH_AS(tests::roll(three, ahead.batch(at_rest)), doctest::Contains("(v, vy, omega)"),
                        std::invalid_argument);

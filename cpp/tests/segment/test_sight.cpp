@@ -22,7 +22,7 @@
 namespace slipwise {
 namespace {
 
-constexpr double kStep = 1e-3;
+constexpr double kSightStep = 1e-3;
 const std::vector<std::string> kSpeed{"V"};
 
 PositionSensor& positions_of(Segment& segment) {
@@ -86,7 +86,7 @@ double derivative_error(const MotionModel& model, const Eigen::VectorXd& paramet
   const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
     return integrate_segment(model, p, inputs, segment).rows();
   };
-  const auto numeric = tests::finite_difference(value, parameters, kStep);
+  const auto numeric = tests::finite_difference(value, parameters, kSightStep);
   return tests::jacobian_error(linearize_segment(model, parameters, inputs, segment).by_parameter, numeric, 0.1);
 }
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sources that clang-tidy reads as one text do not meet, and what it says names the source."""
+"""Sources that clang-tidy reads as one text, and what it says names the source."""
 
 import json
 from pathlib import Path
@@ -22,58 +22,18 @@ def names_of(sources: list[Source]) -> list[list[str]]:
     return [sorted(each.path.stem for each in group.sources) for group in groups_of(sources)]
 
 
-def test_names_of_a_source_alone_are_those_at_the_margin(tmp_path: Path) -> None:
-    lines = (
-        "#define LEVEL 3",
-        "namespace slipwise {",
-        "namespace {",
-        "SLIPWISE_TUNING(kAlike, 0.5);",
-        "constexpr double kLongest = 3.0;  // s",
-        "using Rows = int;",
-        "struct Held {",
-        "  double inside = 0.0;",
-        "};",
-        "std::array<double, 3> limits_of(const Held& held) {",
-        "  return {};",
-        "}",
-        "double Held::value(int k) const {",
-        "}  // namespace",
-    )
-    names = source(tmp_path, "one.cpp", *lines).own_names()
-    assert names == {"LEVEL", "kAlike", "kLongest", "Rows", "Held", "limits_of"}
-
-
-def test_sources_with_one_name_or_other_flags_are_read_apart_those_of_other_folders_together(
+def test_eight_sources_of_a_folder_are_read_together_those_of_other_folders_and_flags_apart(
     tmp_path: Path,
 ) -> None:
-    one = source(tmp_path, "a/one.cpp", "constexpr int kMost = 1;")
-    for folder in ("a", "b"):
-        assert names_of([one, source(tmp_path, f"{folder}/two.cpp", "int two();")]) == [["one", "two"]]
-    for other in (
-        source(tmp_path, "a/three.cpp", "constexpr double kMost = 2.0;"),
-        source(tmp_path, "a/four.cpp", "int two();", command=(*COMMAND, "-mavx2")),
-    ):
-        assert len(names_of([one, other])) == 2
-
-
-def test_a_constant_of_a_header_and_one_of_a_source_are_read_apart(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    headers = tmp_path / "include/slipwise"
-    headers.mkdir(parents=True)
-    (headers / "outer.hpp").write_text('#include "slipwise/inner.hpp"\n')
-    (headers / "inner.hpp").write_text(
-        "enum Place : int { kAlong, kAcross };\n  constexpr int kInside = 1;\n"
-    )
-    monkeypatch.setattr(run_tidy, "INCLUDED_FROM", (tmp_path / "include",))
-    run_tidy.constants_of.cache_clear()
-    one = source(tmp_path, "one.cpp", '#include "slipwise/outer.hpp"', "int one();")
-    assert one.included_constants() == {"kAlong", "kAcross"}
-    two = source(tmp_path, "two.cpp", "constexpr double kAcross = 2.0;")
-    assert names_of([one, two]) == [["one"], ["two"]]
-    run_tidy.constants_of.cache_clear()
-    assert names_of([two, one]) == [["one"], ["two"]]
-    run_tidy.constants_of.cache_clear()
+    names = [f"{number:02}" for number in range(10)]
+    flags = (*COMMAND, "-mavx2")
+    many = [
+        source(tmp_path, f"a/{name}.cpp", "int one();", command=flags if name == "03" else COMMAND)
+        for name in names
+    ]
+    other = source(tmp_path, "b/one.cpp", "int one();")
+    groups = sorted(names_of([*many, other]))
+    assert groups == [[each for each in names[:8] if each != "03"], ["03"], ["08", "09"], ["one"]]
 
 
 def test_each_line_knows_where_it_stands_and_a_header_is_read_once(tmp_path: Path) -> None:

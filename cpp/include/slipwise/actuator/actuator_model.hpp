@@ -33,6 +33,7 @@ struct ActuatorModel {
   bool follows_wheels = false;            ///< no parameter: inputs did the same before the first that was measured
 };
 inline constexpr Eigen::Index kActuatorParameters = 11;  ///< the fields above in their order, but for the last two
+inline constexpr Eigen::Index kDelayV = 2, kDelayOmega = 3, kClockOffset = 4;  ///< places among them
 
 /// What was measured of the drive: its twist until a moment in input stamps, such as wheel speeds until now.
 struct MeasuredActuator {

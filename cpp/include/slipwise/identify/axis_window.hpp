@@ -14,6 +14,7 @@ namespace slipwise {
 
 /// Log lag, log delay [ln s], gain, slow fraction [-], log slow lag [ln s].
 inline constexpr int kChannelParameters = 5;
+inline constexpr Eigen::Index kTimeConstant = 0, kDelay = 1, kSlowFraction = 3, kSlowTimeConstant = 4;  ///< places
 /// Fast part, slow mode, deviation from the actuator.
 inline constexpr int kAxisStates = 3;
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace slipwise {
 
@@ -10,6 +11,9 @@ namespace slipwise {
 /// what is reckoned from such stamps errs by a few times that. Clocks count microseconds: no whole number of them is
 /// near.
 inline constexpr double kSameStamp = 1.5e-6;
+
+/// [s] A stamp later than any, and its negative earlier than any.
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Whether stamp `a` [s] is later than `b`, by more than rounding.
 constexpr bool later(double a, double b) { return a > b + kSameStamp; }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/held_out.hpp"
 #include "slipwise/online/learner_log.hpp"
 #include "slipwise/online/learner_settings.hpp"
@@ -151,10 +152,10 @@ class MotionLearner {
   MotionNow motion_now();
 
   SegmentStream stream_;
-  SegmentLearner learner_;  ///< by its clock all stamps here are counted
-  Localizer localizer_;     ///< not saved
-  bool run_begins_ = true;  ///< no measurement of the run has come yet
-  double before_run_;       ///< newest stamp of the runs before [s]
+  SegmentLearner learner_;       ///< by its clock all stamps here are counted
+  Localizer localizer_;          ///< not saved
+  bool run_begins_ = true;       ///< no measurement of the run has come yet
+  double before_run_ = -kNever;  ///< newest stamp of the runs before [s]
 };
 
 }  // namespace slipwise

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/attitude_gate.hpp"
 #include "slipwise/online/body_rates.hpp"
 #include "slipwise/online/course_finder.hpp"
@@ -112,18 +113,18 @@ class SegmentStream {
 
   MeasuredDrive drive_;
   double keep_;  ///< how long inputs are kept [s]
-  double newest_;
+  double newest_ = -kNever;
   std::array<StampGate, kStreams - 1 + kReadingKinds> stamps_;  ///< of each kind of readings, which come last
   std::array<std::array<SpeedGate, 3>, 2> speeds_;
   bool wheels_ever_ = false;
-  std::array<double, 4> range_;
+  std::array<double, 4> range_{kNever, -kNever, kNever, -kNever};
   AttitudeGate attitudes_;
   double steepest_ = 0.0;
   BodyRates rates_;
   HoldTimes held_;
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet
-  double now_;                       ///< stamp of the pose that is being used, or was last [s]
+  double now_ = -kNever;             ///< stamp of the pose that is being used, or was last [s]
   PoseAccuracies accuracy_;          ///< by fix
   PoseGate gate_;
   PoseTimer timer_;

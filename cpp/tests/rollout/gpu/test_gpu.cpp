@@ -16,10 +16,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPeriod = 0.05;
-const std::vector<RolloutStart> kStart{{{1.0, -2.0, 0.5}, {0.4, 0.2}}};
-const std::vector<DriveCommand> kPast{{0.5, 0.1}, {0.6, 0.0}, {0.5, 0.2}, {0.4, 0.3}};
-
 bool skipped() {
   const std::string reason = why_no_gpu();
   if (!reason.empty()) {
@@ -45,7 +41,7 @@ double apart(const tests::SamplePaths<Scalar>& a, const tests::SamplePaths<doubl
 RolloutProgram sample_program(const char* basis, std::size_t chain_at) {
   const tests::SampleChain actuator = tests::sample_chains()[chain_at];
   const MotionModel model(named_basis(basis), actuator.learned);
-  return {model, tests::sample_parameters(model, actuator), {kPeriod}};
+  return {model, tests::sample_parameters(model, actuator), {tests::kPeriod}};
 }
 
 TEST_CASE("rollouts of 5 s on a GPU are the processor's in every basis and with every actuator") {
@@ -53,8 +49,8 @@ TEST_CASE("rollouts of 5 s on a GPU are the processor's in every basis and with 
     return;
   }
   Gpu gpu;
-  const tests::SampleCommands<double> commands(37, 100, kPeriod);
-  const tests::SampleCommands<float> in_float(37, 100, kPeriod);
+  const tests::SampleCommands<double> commands(37, 100, tests::kPeriod);
+  const tests::SampleCommands<float> in_float(37, 100, tests::kPeriod);
   std::vector<Basis> bases = tests::all_bases();
   bases.push_back(tests::union_of_all());
   for (const Basis& basis : bases) {
@@ -64,12 +60,12 @@ TEST_CASE("rollouts of 5 s on a GPU are the processor's in every basis and with 
     for (const tests::SampleChain& actuator : tests::sample_chains()) {
       CAPTURE(std::string(actuator.name));
       const MotionModel model(basis, actuator.learned);
-      const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod, 0.3, -0.2});
-      const auto expected = tests::roll(program, wide.batch(kStart, kPast));
-      CHECK(apart(tests::roll(program, wide.batch(kStart, kPast), {.gpu = &gpu}), expected) < 1e-9);
+      const RolloutProgram program(model, tests::sample_parameters(model, actuator), {tests::kPeriod, 0.3, -0.2});
+      const auto expected = tests::roll(program, wide.batch(tests::kStart, tests::kPast));
+      CHECK(apart(tests::roll(program, wide.batch(tests::kStart, tests::kPast), {.gpu = &gpu}), expected) < 1e-9);
       // In float, a few are more than 1e-5 m off where a lagging speed passes zero (derivations/rollouts.md).
-      CHECK(apart(tests::roll(program, narrow.batch(kStart, kPast), {.gpu = &gpu}), expected) < 2.5e-5);
-      CHECK(apart(tests::roll(program, narrow.batch(kStart, kPast)), expected) < 2.5e-5);
+      CHECK(apart(tests::roll(program, narrow.batch(tests::kStart, tests::kPast), {.gpu = &gpu}), expected) < 2.5e-5);
+      CHECK(apart(tests::roll(program, narrow.batch(tests::kStart, tests::kPast)), expected) < 2.5e-5);
     }
   }
 }
@@ -79,14 +75,14 @@ TEST_CASE("rollouts on a grade are the processor's on a GPU too") {
     return;
   }
   Gpu gpu;
-  const tests::SampleCommands<double> commands(37, 100, kPeriod);
+  const tests::SampleCommands<double> commands(37, 100, tests::kPeriod);
   for (const tests::SampleChain& actuator : tests::sample_chains()) {
     CAPTURE(std::string(actuator.name));
     const MotionModel model(named_basis("drive-9"), actuator.learned);
     const RolloutProgram program(model, tests::sample_parameters(model, actuator),
-                                 {.period = kPeriod, .rise_x = 0.12, .rise_y = -0.2});
-    const auto expected = tests::roll(program, commands.batch(kStart, kPast));
-    CHECK(apart(tests::roll(program, commands.batch(kStart, kPast), {.gpu = &gpu}), expected) < 1e-9);
+                                 {.period = tests::kPeriod, .rise_x = 0.12, .rise_y = -0.2});
+    const auto expected = tests::roll(program, commands.batch(tests::kStart, tests::kPast));
+    CHECK(apart(tests::roll(program, commands.batch(tests::kStart, tests::kPast), {.gpu = &gpu}), expected) < 1e-9);
   }
 }
 
@@ -95,13 +91,13 @@ TEST_CASE("rollouts of a drive that steers are the processor's on a GPU too") {
     return;
   }
   Gpu gpu;
-  const tests::SampleCommands<double> commands(37, 100, kPeriod);
+  const tests::SampleCommands<double> commands(37, 100, tests::kPeriod);
   for (const tests::SampleChain& actuator : tests::steering_chains()) {
     CAPTURE(std::string(actuator.name));
     const MotionModel model(named_basis("drive-5"), actuator.learned);
-    const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod});
-    const auto expected = tests::roll(program, commands.batch(kStart, kPast));
-    CHECK(apart(tests::roll(program, commands.batch(kStart, kPast), {.gpu = &gpu}), expected) < 1e-9);
+    const RolloutProgram program(model, tests::sample_parameters(model, actuator), {tests::kPeriod});
+    const auto expected = tests::roll(program, commands.batch(tests::kStart, tests::kPast));
+    CHECK(apart(tests::roll(program, commands.batch(tests::kStart, tests::kPast), {.gpu = &gpu}), expected) < 1e-9);
   }
 }
 
@@ -110,15 +106,16 @@ TEST_CASE("rollouts over surfaces ahead are the processor's on a GPU too") {
     return;
   }
   Gpu gpu;
-  const tests::SampleCommands<double> commands(37, 100, kPeriod);
+  const tests::SampleCommands<double> commands(37, 100, tests::kPeriod);
   for (const tests::SampleChain& actuator : tests::sample_chains()) {
     CAPTURE(std::string(actuator.name));
     const MotionModel model(named_basis("drive-9"), actuator.learned);
     const Eigen::VectorXd change = Eigen::VectorXd::LinSpaced(model.slip_size(), -0.1, 0.1);
     const SlipAhead ahead{.edges = {0.5, 1.7}, .changes = {change, -2.0 * change}};
-    const RolloutProgram program(model, tests::sample_parameters(model, actuator), {.period = kPeriod, .ahead = ahead});
-    const auto expected = tests::roll(program, commands.batch(kStart, kPast));
-    CHECK(apart(tests::roll(program, commands.batch(kStart, kPast), {.gpu = &gpu}), expected) < 1e-9);
+    const RolloutProgram program(model, tests::sample_parameters(model, actuator),
+                                 {.period = tests::kPeriod, .ahead = ahead});
+    const auto expected = tests::roll(program, commands.batch(tests::kStart, tests::kPast));
+    CHECK(apart(tests::roll(program, commands.batch(tests::kStart, tests::kPast), {.gpu = &gpu}), expected) < 1e-9);
   }
 }
 
@@ -129,7 +126,7 @@ TEST_CASE("a GPU takes commands as they lie, and starts of every rollout's own")
   Gpu gpu;
   constexpr std::size_t kRollouts = 101, kPeriods = 20;
   const RolloutProgram program = sample_program("odd-even-10", 6);
-  const tests::SampleCommands<double> commands(kRollouts, kPeriods, kPeriod);
+  const tests::SampleCommands<double> commands(kRollouts, kPeriods, tests::kPeriod);
   std::vector<RolloutStart> starts;
   std::vector<DriveCommand> past;
   std::vector<double> rows(2 * kRollouts * kPeriods);
@@ -165,13 +162,13 @@ TEST_CASE("last poses and costs on a GPU are the processor's") {
     cells[i] = static_cast<float>(i % 7);
   }
   const Costmap map{cells, 6, 10, 0.25, 0.0, -2.5, 100.0F};
-  const tests::SampleCommands<double> commands(70, 30, kPeriod);
+  const tests::SampleCommands<double> commands(70, 30, tests::kPeriod);
   for (const std::size_t actuator : {std::size_t{0}, std::size_t{3}}) {
     const RolloutProgram program = sample_program("thesis-15", actuator);
     std::vector<std::vector<double>> found;
     for (Gpu* const where : {static_cast<Gpu*>(nullptr), &gpu}) {
       std::vector<double> all(6 * 70);
-      rollout_batch(program, commands.batch(kStart, kPast),
+      rollout_batch(program, commands.batch(tests::kStart, tests::kPast),
                     {.end_x = &all[0],
                      .end_y = &all[70],
                      .end_theta = &all[140],
@@ -194,10 +191,10 @@ TEST_CASE("periods so long that a robot turns round within them are the processo
   const MotionModel model(named_basis("odd-even-10"), {});
   const RolloutProgram program(model, tests::sample_slip(model.basis(), 31), {1.0});
   const tests::SampleCommands<double> commands(37, 5, 1.0, 9.0);
-  const auto expected = tests::roll(program, commands.batch(kStart));
-  CHECK(apart(tests::roll(program, commands.batch(kStart), {.gpu = &gpu}), expected) < 1e-9);
+  const auto expected = tests::roll(program, commands.batch(tests::kStart));
+  CHECK(apart(tests::roll(program, commands.batch(tests::kStart), {.gpu = &gpu}), expected) < 1e-9);
   const tests::SampleCommands<float> in_float(37, 5, 1.0, 9.0);
-  CHECK(apart(tests::roll(program, in_float.batch(kStart), {.gpu = &gpu}), expected) < 1e-4);
+  CHECK(apart(tests::roll(program, in_float.batch(tests::kStart), {.gpu = &gpu}), expected) < 1e-4);
 }
 
 TEST_CASE("what lies on the GPU is neither copied there nor back") {
@@ -207,7 +204,7 @@ TEST_CASE("what lies on the GPU is neither copied there nor back") {
   Gpu gpu;
   constexpr std::size_t kRollouts = 33, kPeriods = 12;
   const RolloutProgram program = sample_program("thesis-15", 3);
-  tests::SampleCommands<double> commands(kRollouts, kPeriods, kPeriod);
+  tests::SampleCommands<double> commands(kRollouts, kPeriods, tests::kPeriod);
   GpuMemory v, omega, ends;
   const auto move = [](void* to, const void* from, std::size_t count) {
     gpu_copy({to, count * sizeof(double), from, count * sizeof(double), count * sizeof(double), 1});
@@ -220,7 +217,7 @@ TEST_CASE("what lies on the GPU is neither copied there nor back") {
     move(omega_there, commands.omega.data(), kRollouts * kPeriods);
   };
   bring();
-  RolloutBatch<double> batch = commands.batch(kStart, kPast);
+  RolloutBatch<double> batch = commands.batch(tests::kStart, tests::kPast);
   std::vector<double> expected(kRollouts), found(kRollouts);
   rollout_batch(program, batch, {.end_x = expected.data()});
   batch.commands.v = v_there;
@@ -245,24 +242,24 @@ TEST_CASE("what cannot be rolled out on a GPU is refused and named") {
   }
   Gpu gpu;
   const RolloutProgram program = sample_program("edd-2", 3);
-  tests::SampleCommands<double> commands(3, 10, kPeriod);
+  tests::SampleCommands<double> commands(3, 10, tests::kPeriod);
   commands.omega[29] = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_WITH_AS(tests::roll(program, commands.batch(kStart), {.gpu = &gpu}),
+  CHECK_THROWS_WITH_AS(tests::roll(program, commands.batch(tests::kStart), {.gpu = &gpu}),
                        doctest::Contains("rollout 2 over period 9"), std::invalid_argument);
   commands.omega[29] = 0.0;
   commands.omega[4] = 1e9;
-  CHECK_THROWS_WITH_AS(tests::roll(program, commands.batch(kStart), {.gpu = &gpu}),
+  CHECK_THROWS_WITH_AS(tests::roll(program, commands.batch(tests::kStart), {.gpu = &gpu}),
                        doctest::Contains("thousands of times"), std::invalid_argument);
   commands.omega[4] = 0.0;
   const tests::SampleChain actuator = tests::sample_chains()[3];
   const MotionModel model(named_basis("edd-2"), actuator.learned);
   const RolloutProgram slow(model, tests::sample_parameters(model, actuator), {20.0});
-  CHECK_THROWS_WITH_AS(tests::roll(slow, commands.batch(kStart), {.gpu = &gpu}), doctest::Contains("shorter periods"),
-                       std::invalid_argument);
-  RolloutSetting setting{.period = kPeriod};
+  CHECK_THROWS_WITH_AS(tests::roll(slow, commands.batch(tests::kStart), {.gpu = &gpu}),
+                       doctest::Contains("shorter periods"), std::invalid_argument);
+  RolloutSetting setting{.period = tests::kPeriod};
   setting.limits.speed.saturation = 0.5;
   const RolloutProgram limited(model, tests::sample_parameters(model, actuator), setting);
-  CHECK_THROWS_WITH_AS(tests::roll(limited, commands.batch(kStart), {.gpu = &gpu}),
+  CHECK_THROWS_WITH_AS(tests::roll(limited, commands.batch(tests::kStart), {.gpu = &gpu}),
                        doctest::Contains("on the processor only"), std::invalid_argument);
 }
 

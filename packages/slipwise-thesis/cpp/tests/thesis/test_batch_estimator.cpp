@@ -14,37 +14,32 @@
 namespace slipwise {
 namespace {
 
-const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.005};
 const Eigen::Vector3d kScale(2.0, 0.5, 3.0);
-
-Estimate wide_prior(const MotionModel& model) {
-  return {Eigen::VectorXd::Zero(model.size()), 0.04 * Eigen::MatrixXd::Identity(model.size(), model.size())};
-}
 
 EstimatorSettings settings_with(double huber) {
   EstimatorSettings settings;
-  settings.noise = kNoise;
+  settings.noise = tests::kNoise;
   settings.iekf.huber = huber;
   return settings;
 }
 
 tests::SimulatedDrive drive_of(const MotionModel& model) {
   return tests::simulate_drive(model, tests::sample_slip(model.basis(), 91, 0.1),
-                               {.seed = 92, .windows = 60, .noise = kNoise});
+                               {.seed = 92, .windows = 60, .noise = tests::kNoise});
 }
 
 TEST_CASE("its estimate is the batch fit of all segments under the noise it was commanded") {
   const MotionModel model(named_basis("drive-5"), {});
   const auto drive = drive_of(model);
-  Estimator estimator = make_estimator("batch", model, wide_prior(model), settings_with(1.5));
+  Estimator estimator = make_estimator("batch", model, tests::wide_prior(model), settings_with(1.5));
   std::vector<BatchDatum> data;
   for (const Segment& segment : drive.segments) {
     estimator.learn(drive.inputs, segment);
     const SegmentPath path = integrate_segment(model, Eigen::VectorXd::Zero(model.size()), drive.inputs, segment);
-    data.push_back({drive.inputs, segment, segment_noise(path, rows_of(segment.measured), kNoise, kScale)});
+    data.push_back({drive.inputs, segment, segment_noise(path, rows_of(segment.measured), tests::kNoise, kScale)});
   }
   estimator.scale_noise(kScale);
-  const Estimate fit = batch_fit(model, wide_prior(model), data, {.huber = 1.5}).estimate;
+  const Estimate fit = batch_fit(model, tests::wide_prior(model), data, {.huber = 1.5}).estimate;
   CHECK(estimator.estimate().mean == fit.mean);
   CHECK(estimator.estimate().covariance == fit.covariance);
 }
@@ -52,10 +47,10 @@ TEST_CASE("its estimate is the batch fit of all segments under the noise it was 
 TEST_CASE("updates and running posterior are those of the iekf, and before any segment all is the prior") {
   const MotionModel model(named_basis("drive-5"), {});
   const auto drive = drive_of(model);
-  Estimator batch = make_estimator("batch", model, wide_prior(model), settings_with(2.5));
-  Estimator filter = make_estimator("iekf", model, wide_prior(model), settings_with(2.5));
-  CHECK(batch.estimate().mean == wide_prior(model).mean);
-  CHECK(batch.estimate().covariance == wide_prior(model).covariance);
+  Estimator batch = make_estimator("batch", model, tests::wide_prior(model), settings_with(2.5));
+  Estimator filter = make_estimator("iekf", model, tests::wide_prior(model), settings_with(2.5));
+  CHECK(batch.estimate().mean == tests::wide_prior(model).mean);
+  CHECK(batch.estimate().covariance == tests::wide_prior(model).covariance);
   for (const Segment& segment : drive.segments) {
     CHECK(batch.learn(drive.inputs, segment).nis == filter.learn(drive.inputs, segment).nis);
     CHECK(batch.running().mean == filter.estimate().mean);
@@ -67,8 +62,8 @@ TEST_CASE("updates and running posterior are those of the iekf, and before any s
 TEST_CASE("it needs the inputs no longer than learning takes") {
   const MotionModel model(named_basis("edd-2"), {});
   const auto drive = drive_of(model);
-  Estimator known = make_estimator("batch", model, wide_prior(model), settings_with(2.5));
-  Estimator alone = make_estimator("batch", model, wide_prior(model), settings_with(2.5));
+  Estimator known = make_estimator("batch", model, tests::wide_prior(model), settings_with(2.5));
+  Estimator alone = make_estimator("batch", model, tests::wide_prior(model), settings_with(2.5));
   std::optional<InputHistory> passing(drive.inputs);
   for (const Segment& segment : drive.segments) {
     known.learn(drive.inputs, segment);

@@ -14,23 +14,17 @@
 namespace slipwise {
 namespace {
 
-const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.005};
-
-Estimate wide_prior(const MotionModel& model, double sigma = 0.2) {
-  return {Eigen::VectorXd::Zero(model.size()), sigma * sigma * Eigen::MatrixXd::Identity(model.size(), model.size())};
-}
-
 TEST_CASE("every estimator recovers slip with the exact Jacobian; the thesis's filter does not with (6.7)") {
   const MotionModel model(named_basis("drive-5"), {});
   const Eigen::VectorXd truth = tests::sample_slip(model.basis(), 81, 0.1);
-  const auto drive = tests::simulate_drive(model, truth, {.seed = 82, .windows = 200, .noise = kNoise});
+  const auto drive = tests::simulate_drive(model, truth, {.seed = 82, .windows = 200, .noise = tests::kNoise});
   for (const std::string& name : estimator_names()) {
     CAPTURE(name);
     for (const SegmentJacobian jacobian : {SegmentJacobian::Exact, SegmentJacobian::Thesis}) {
       EstimatorSettings settings;
-      settings.noise = kNoise;
+      settings.noise = tests::kNoise;
       settings.ekf_thesis.jacobian = jacobian;
-      Estimator estimator = make_estimator(name, model, wide_prior(model), settings);
+      Estimator estimator = make_estimator(name, model, tests::wide_prior(model), settings);
       for (const Segment& segment : drive.segments) {
         estimator.learn(drive.inputs, segment);
       }
@@ -44,9 +38,9 @@ TEST_CASE("every estimator recovers slip with the exact Jacobian; the thesis's f
 TEST_CASE("gradient descent has no covariance of its own: it keeps the prior's") {
   const MotionModel model(named_basis("edd-2"), {});
   const auto drive = tests::simulate_drive(model, Eigen::Vector2d(0.1, -0.1), {.seed = 83, .windows = 5});
-  Estimator estimator = make_estimator("gradient-descent", model, wide_prior(model), {});
+  Estimator estimator = make_estimator("gradient-descent", model, tests::wide_prior(model), {});
   estimator.learn(drive.inputs, drive.segments.front());
-  CHECK(estimator.estimate().covariance == wide_prior(model).covariance);
+  CHECK(estimator.estimate().covariance == tests::wide_prior(model).covariance);
   CHECK(estimator.estimate().mean.norm() > 0.0);
 }
 
@@ -56,7 +50,7 @@ TEST_CASE("a gradient step of full rate without damping closes the residual to f
       tests::simulate_drive(model, tests::sample_slip(model.basis(), 84, 1e-4), {.seed = 85, .windows = 1});
   EstimatorSettings settings;
   settings.gradient_descent = {.learning_rate = 1.0, .damping = 1e-12};
-  Estimator estimator = make_estimator("gradient-descent", model, wide_prior(model), settings);
+  Estimator estimator = make_estimator("gradient-descent", model, tests::wide_prior(model), settings);
   const double before = estimator.learn(drive.inputs, drive.segments[0]).innovation.norm();
   const double after = estimator.learn(drive.inputs, drive.segments[0]).innovation.norm();
   CHECK(before > 1e-5);
@@ -66,19 +60,19 @@ TEST_CASE("a gradient step of full rate without damping closes the residual to f
 TEST_CASE("the thesis's filter is Table 6.1 line by line") {
   const MotionModel model(named_basis("thesis-15"), {});
   const auto drive = tests::simulate_drive(model, tests::sample_slip(model.basis(), 86, 0.02),
-                                           {.seed = 87, .windows = 3, .noise = kNoise});
+                                           {.seed = 87, .windows = 3, .noise = tests::kNoise});
   EstimatorSettings settings;
-  settings.noise = kNoise;
+  settings.noise = tests::kNoise;
   settings.ekf_thesis.process_std = 0.01;
-  Estimator estimator = make_estimator("ekf-thesis", model, wide_prior(model), settings);
-  Estimate expected = wide_prior(model);
+  Estimator estimator = make_estimator("ekf-thesis", model, tests::wide_prior(model), settings);
+  Estimate expected = tests::wide_prior(model);
   for (const Segment& segment : drive.segments) {
     estimator.learn(drive.inputs, segment);
     const auto at = linearize_segment(model, expected.mean, drive.inputs, segment);
     const Eigen::Matrix3Xd j = thesis_jacobian(model, at, segment);
-    const Eigen::MatrixXd predicted = expected.covariance + 1e-4 * wide_prior(model).covariance;
+    const Eigen::MatrixXd predicted = expected.covariance + 1e-4 * tests::wide_prior(model).covariance;
     const Eigen::Matrix3d noise =
-        slip_covariance(at.path, kNoise) + pose_noise_covariance(motion_of(segment.measured), kNoise);
+        slip_covariance(at.path, tests::kNoise) + pose_noise_covariance(motion_of(segment.measured), tests::kNoise);
     const Eigen::Matrix3Xd spread = j * predicted;
     const Eigen::Matrix3d s = spread * j.transpose() + noise;
     const Eigen::MatrixX3d k = spread.transpose() * s.inverse();
@@ -91,7 +85,7 @@ TEST_CASE("the thesis's filter is Table 6.1 line by line") {
 
 TEST_CASE("an unknown name is refused with the names that are known, a wrong prior with its size") {
   const MotionModel model(named_basis("edd-2"), {});
-  CHECK_THROWS_WITH_AS(make_estimator("magic", model, wide_prior(model), {}),
+  CHECK_THROWS_WITH_AS(make_estimator("magic", model, tests::wide_prior(model), {}),
                        "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state, batch",
                        std::invalid_argument);
   CHECK_THROWS_AS(learns_overlapping_segments("magic"), std::invalid_argument);
@@ -103,7 +97,7 @@ TEST_CASE("on its own the iekf behind the interface is the causal filter until t
   const MotionModel model(named_basis("odd-even-10"), {.clock_offset = true});
   Eigen::VectorXd truth(11);
   truth << tests::sample_slip(model.basis(), 88, 0.05), 0.05;
-  const auto drive = tests::simulate_drive(model, truth, {.seed = 89, .windows = 7, .noise = kNoise});
+  const auto drive = tests::simulate_drive(model, truth, {.seed = 89, .windows = 7, .noise = tests::kNoise});
   const CausalFilterSettings settings;
   FollowingEstimator following("iekf", model, settings);
   CausalFilter filter(model, settings);
@@ -121,15 +115,15 @@ TEST_CASE("on its own the iekf behind the interface is the causal filter until t
 TEST_CASE("every estimator takes a prior of other speeds") {
   const MotionModel model(named_basis("edd-2"), {});
   const auto drive =
-      tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.2), {.seed = 90, .windows = 40, .noise = kNoise});
+      tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.2), {.seed = 90, .windows = 40, .noise = tests::kNoise});
   const Eigen::Vector2d old_std(0.2, 0.2), new_std(0.4, 0.1);
   for (const std::string& name : {std::string("iekf"), std::string("delayed-state"), std::string("batch")}) {
     CAPTURE(name);
     EstimatorSettings settings;
-    settings.noise = kNoise;
+    settings.noise = tests::kNoise;
     settings.iekf = {.huber = 1e9, .gate = 1e18};
-    Estimator changed = make_estimator(name, model, wide_prior(model), settings);
-    Estimate prior = wide_prior(model);
+    Estimator changed = make_estimator(name, model, tests::wide_prior(model), settings);
+    Estimate prior = tests::wide_prior(model);
     prior.covariance.diagonal() = new_std.cwiseAbs2();
     Estimator known = make_estimator(name, model, prior, settings);
     for (const Segment& segment : drive.segments) {

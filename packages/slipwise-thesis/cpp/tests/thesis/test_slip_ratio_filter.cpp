@@ -13,14 +13,14 @@
 namespace slipwise {
 namespace {
 
-const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.005, .pose_std_yaw = 0.003};
+const MotionNoise kPoseNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.005, .pose_std_yaw = 0.003};
 
 SlipRatioFilterSettings constant_slip() {
-  return {.wheel_separation = tests::kTestTrack, .walk_ratio = 0.0, .walk_angle = 0.0, .noise = kNoise};
+  return {.wheel_separation = tests::kTestTrack, .walk_ratio = 0.0, .walk_angle = 0.0, .noise = kPoseNoise};
 }
 
 TEST_CASE("the predicted chart has the derivative that is stated") {
-  const auto drive = tests::slip_ratio_drive(1, 3, kNoise);
+  const auto drive = tests::slip_ratio_drive(1, 3, kPoseNoise);
   const Segment& segment = drive.segments.front();
   const auto chart = [&](const Eigen::VectorXd& slip) -> Eigen::VectorXd {
     const auto at = linearize_slip_ratios(drive.inputs, segment, SlipRatios::from_vector(slip), tests::kTestTrack);
@@ -33,7 +33,7 @@ TEST_CASE("the predicted chart has the derivative that is stated") {
 
 TEST_CASE("the filter recovers constant slip ratios within three sigma") {
   SlipRatioFilter filter(constant_slip());
-  const auto drive = tests::slip_ratio_drive(150, 7, kNoise);
+  const auto drive = tests::slip_ratio_drive(150, 7, kPoseNoise);
   for (const Segment& segment : drive.segments) {
     filter.learn(drive.inputs, segment);
   }
@@ -51,7 +51,7 @@ TEST_CASE("innovations are as large as the filter says") {
   int count = 0;
   for (const std::uint64_t seed : {11U, 12U, 13U, 14U}) {
     SlipRatioFilter filter(constant_slip());
-    const auto drive = tests::slip_ratio_drive(100, seed, kNoise);
+    const auto drive = tests::slip_ratio_drive(100, seed, kPoseNoise);
     for (const Segment& segment : drive.segments) {
       sum += filter.learn(drive.inputs, segment).nis;
       ++count;
@@ -102,7 +102,7 @@ TEST_CASE("a pose jump counts for less and leaves the slip possible") {
 
 TEST_CASE("the linear posterior predicts what the slip ratios predict") {
   SlipRatioFilter filter(constant_slip());
-  const auto drive = tests::slip_ratio_drive(5, 9, kNoise);
+  const auto drive = tests::slip_ratio_drive(5, 9, kPoseNoise);
   for (const Segment& segment : drive.segments) {
     filter.learn(drive.inputs, segment);
   }
@@ -115,8 +115,8 @@ TEST_CASE("the linear posterior predicts what the slip ratios predict") {
 }
 
 TEST_CASE("senseless settings and segments are refused") {
-  CHECK_THROWS_AS(SlipRatioFilter({.wheel_separation = 0.0, .noise = kNoise}), std::invalid_argument);
-  CHECK_THROWS_AS(SlipRatioFilter({.walk_ratio = -0.1, .noise = kNoise}), std::invalid_argument);
+  CHECK_THROWS_AS(SlipRatioFilter({.wheel_separation = 0.0, .noise = kPoseNoise}), std::invalid_argument);
+  CHECK_THROWS_AS(SlipRatioFilter({.walk_ratio = -0.1, .noise = kPoseNoise}), std::invalid_argument);
   CHECK_THROWS_WITH_AS(SlipRatioFilter({}), doctest::Contains("positive wheel separation"), std::invalid_argument);
   SlipRatioFilter filter(constant_slip());
   const InputHistory history = tests::straight_inputs(1.0);
