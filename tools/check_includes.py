@@ -61,6 +61,11 @@ STANDARD = {
     "vector": "vector",
 }
 STANDARD_NAMES = {header: re.compile(rf"\bstd::(?:{names})\b") for header, names in STANDARD.items()}
+#: What a header declares: a type or a constant.
+DECLARED = re.compile(
+    r"^ *(?:(?:struct|class|enum class|enum) (\w+)(?= [{:]| final)|using (\w+) =|inline .*?\b(k[A-Z]\w*))",
+    re.MULTILINE,
+)
 NO_CODE = re.compile(r'//.*|"(?:[^"\\]|\\.)*"')
 
 
@@ -144,7 +149,8 @@ def closures(direct: Mapping[str, set[str]]) -> dict[str, frozenset[str]]:
 
 def name_faults(root: Path, graph: Mapping[str, set[str]]) -> Iterator[str]:
     """Say which files use names of the standard library, or Eigen, without a header that has them."""
-    within = closures(graph)
+    within, own = closures(graph), own_names(root)
+    used = re.compile(rf"(?<![\w.>:/])(?:{'|'.join(sorted(own))})\b") if own else None
     for path in files(root):
         name, code = path.relative_to(root).as_posix(), NO_CODE.sub("", path.read_text(encoding="utf-8"))
         headers = within.get(name_of(name), frozenset())
@@ -153,6 +159,28 @@ def name_faults(root: Path, graph: Mapping[str, set[str]]) -> Iterator[str]:
                 yield f"{name}: {found[0]} without <{header}>"
         if "Eigen::" in code and not any(each.startswith("Eigen/") for each in headers):
             yield f"{name}: Eigen:: without a header of Eigen"
+        if used is not None and path.suffix == ".cpp":  # each header is compiled alone
+            missing = {each for each in used.findall(code) if own[each] not in headers}
+            for found in sorted(each for each in missing if not defines(code, each)):
+                yield f"{name}: {found} without {own[found]}"
+
+
+def own_names(root: Path) -> dict[str, str]:
+    """Return which header declares each name that one header alone does."""
+    found: dict[str, set[str]] = {}
+    for path in files(root):
+        name = name_of(path.relative_to(root).as_posix())
+        if name.startswith(OWN):
+            for each in DECLARED.finditer(path.read_text(encoding="utf-8")):
+                found.setdefault(next(filter(None, each.groups())), set()).add(name)
+    return {name: next(iter(headers)) for name, headers in found.items() if len(headers) == 1}
+
+
+def defines(code: str, name: str) -> bool:
+    """Return whether a source has a type, a constant or a parameter of a template with this name itself."""
+    return bool(
+        re.search(rf"\b(?:struct|class|enum|using|typename|constexpr [^;=]*|TUNING\() ?{name}\b", code)
+    )
 
 
 def name_of(path: str) -> str:

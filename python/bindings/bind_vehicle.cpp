@@ -18,6 +18,7 @@
 #include "slipwise/lie/body_twist.hpp"
 #include "slipwise/vehicle/ackermann.hpp"
 #include "slipwise/vehicle/differential_drive.hpp"
+#include "slipwise/vehicle/towed_turns.hpp"
 #include "slipwise/vehicle/wheel_layout.hpp"
 
 namespace nb = nanobind;
@@ -260,6 +261,19 @@ void bind_vehicle(nb::module_& m) {
             return twist_rows(v, steer, [&car](double speed, double angle) { return car.twist(speed, angle); });
           },
           "v"_a, "steer"_a, "Rows of (v [m/s], omega [rad/s]) from speeds [N] in m/s and steering angles [N] in rad.");
+  m.def(
+      "towed_turns",
+      [](const Eigen::VectorXd& forward, const Eigen::VectorXd& rotation, const Rows& trailers, double most_folded,
+         int parts) {
+        check_columns(trailers, 3, "trailers");
+        std::vector<Trailer> towed;
+        for (const auto& row : trailers.rowwise()) {
+          towed.push_back({.length = row[0], .turn = row[1], .behind = row[2]});
+        }
+        return towed_turns(forward, rotation, towed, most_folded, parts);
+      },
+      "forward"_a, "rotation"_a, "trailers"_a, "most_folded"_a, "parts"_a,
+      "Turns [K, C] in rad of trailers, rows of (length [m], turn, behind) [C, 3], behind a robot of K steps.");
 }
 
 void bind_dynamics(nb::module_& m) {

@@ -39,6 +39,18 @@ def test_a_source_includes_its_own_header_first(tmp_path: Path) -> None:
     ]
 
 
+def test_a_source_includes_what_has_its_types_and_constants(tmp_path: Path) -> None:
+    declared = ("inline constexpr double kStep = 0.1;", "struct Path {", "};", "using Steps = int;")
+    write(tmp_path, "cpp/include/slipwise/lie/path.hpp", *declared)
+    write(tmp_path, "cpp/src/motion/all.cpp", '#include "slipwise/lie/path.hpp"', "Path p{kStep, Steps{1}};")
+    write(tmp_path, "cpp/src/motion/own.cpp", "constexpr double kStep = 0.2;", "double s = kStep;")
+    assert check(tmp_path) == []
+    write(tmp_path, "cpp/src/motion/none.cpp", "#include <cmath>", "Path p{kStep};  // Steps")
+    assert check(tmp_path) == [
+        f"cpp/src/motion/none.cpp: {name} without slipwise/lie/path.hpp" for name in ("Path", "kStep")
+    ]
+
+
 @pytest.mark.parametrize("folder", [folder for row in LAYERS[:-1] for folder in row])
 def test_a_header_of_a_higher_layer_is_refused(tmp_path: Path, folder: str) -> None:
     write(

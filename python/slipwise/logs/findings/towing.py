@@ -5,9 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
+from slipwise import _core
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Bools, Floats, Inputs, Poses
 
@@ -26,6 +28,7 @@ _FOLDED = 1.5  # [rad] a trailer folds no further
 _LENGTHS = (0.4, 0.55, 0.75, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6)  # [m] from the hitch to the axle
 _TURNS = (0.3, 0.45, 0.65, 0.9, 1.25)  # of the inputs' turns, by the robot that tows
 _BEHIND = (0.0, 0.3)  # from the robot's axle to the hitch, in lengths
+_TRAILERS = np.array(list(product(_LENGTHS, _TURNS, _BEHIND)))
 _SCALE = (0.65, 1.5)  # of the turns that a trailer should make; farther off it is none
 _KEPT = 0.9  # of the windows, by the size of what is left; the others may be jumps of poses
 
@@ -95,13 +98,18 @@ def left_by_trailer(drives: Sequence[Towing], *, commanded: bool) -> tuple[float
     """
     measured, best = turns(drives), (1.0, 0.0)
     for lag in _LAGS_OF_DRIVES if commanded else _LAGS_OF_DRIVES[:1]:
-        towed = [_towed(_lagged(each.forward, lag), _lagged(each.rotation, lag)) for each in drives]
+        towed = [
+            _core.towed_turns(
+                _lagged(each.forward, lag), _lagged(each.rotation, lag), _TRAILERS, _FOLDED, _PARTS
+            )
+            for each in drives
+        ]
         pulls = np.concatenate([each.between(each.forward[:, None]) for each in drives])
         turned = np.concatenate([each.between(steps) for each, steps in zip(drives, towed, strict=True)])
         for number, column in enumerate(turned.T):
             left, scale = _left(np.column_stack((column, pulls)), measured)
             if left < best[0] and _SCALE[0] < scale < _SCALE[1]:
-                best = (left, _LENGTHS[number // (len(_TURNS) * len(_BEHIND))])
+                best = (left, float(_TRAILERS[number, 0]))
     return best
 
 
@@ -122,18 +130,6 @@ def _ways_to_turn(forward: Floats, rotation: Floats) -> Floats:
     speed = np.abs(forward) / _STEP
     ways = (rotation, forward, rotation * speed, rotation * speed**2, rotation * np.abs(rotation))
     return np.column_stack(ways)
-
-
-def _towed(forward: Floats, rotation: Floats) -> Floats:
-    """Return by how much each trailer turns in each step [K, C]: L psi' = v sin(phi) - b omega cos(phi)."""
-    length, turn, behind = (c.ravel() for c in np.meshgrid(_LENGTHS, _TURNS, _BEHIND, indexing="ij"))
-    fold, turned = np.zeros(len(length)), np.zeros((len(forward), len(length)))
-    for step, (way, angle) in enumerate(zip(forward / _PARTS, rotation / _PARTS, strict=True)):
-        for _ in range(_PARTS):
-            follows = way / length * np.sin(fold) - behind * turn * angle * np.cos(fold)
-            fold = np.clip(fold + turn * angle - follows, -_FOLDED, _FOLDED)
-            turned[step] += follows
-    return turned
 
 
 def _lagged(steps: Floats, lag: float) -> Floats:
