@@ -16,6 +16,9 @@ Eigen::MatrixXd towed_turns(const Eigen::Ref<const Eigen::VectorXd>& forward,
   if (forward.size() != rotation.size()) {
     throw std::invalid_argument("each step needs a way and a turn");
   }
+  if (parts < 1 || !std::ranges::all_of(trailers, [](const Trailer& trailer) { return trailer.length > 0.0; })) {
+    throw std::invalid_argument("a trailer needs a length above 0, and each step at least one part");
+  }
   Eigen::MatrixXd turned(forward.size(), std::ssize(trailers));
   for (Eigen::Index column = 0; column < turned.cols(); ++column) {
     const Trailer& trailer = trailers[static_cast<std::size_t>(column)];

@@ -33,6 +33,9 @@ TEST_CASE("a trailer behind the axle first turns against the robot; straight on 
   CHECK(turned(0, 0) == doctest::Approx(-0.03));
   CHECK(turned(1, 0) == 0.0);
   CHECK_THROWS_AS(towed_turns(Eigen::Vector3d::Zero(), rotation, trailers, kMostFolded, 1), std::invalid_argument);
+  CHECK_THROWS_AS(towed_turns(rotation, rotation, trailers, kMostFolded, 0), std::invalid_argument);
+  const std::array pointless{Trailer{0.0, 1.0, 0.3}};
+  CHECK_THROWS_AS(towed_turns(rotation, rotation, pointless, kMostFolded, 1), std::invalid_argument);
 }
 
 }  // namespace

@@ -73,6 +73,7 @@ ANY_LENGTH = {
     "thesis_std_coefficients design",
     "steady_covariance times",
     "steady_path times",
+    "towed_turns trailers",
 }
 
 
