@@ -17,7 +17,7 @@ from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.model_content import ModelFacts, model_content
-from slipwise.calibration.mounts import mounts_of
+from slipwise.calibration.mounts import mounts_of, holding_mounts
 from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of
 from slipwise.calibration.prepared_run import (
@@ -110,7 +110,7 @@ def calibrate_by(
     gyro = gyro_clock(log.runs)
     placed = {mount.name for mount in mounts}
     return Calibration(
-        model_of(content, log, found),
+        holding_mounts(model_of(content, log, found), mounts),
         judged.verdict,
         learned.history,
         (*log.left_out, *unused_runs(log, input_name), *windows.left_out),
@@ -118,7 +118,7 @@ def calibrate_by(
             *log.notes,
             *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.judged),
             *(source.sentence(placed=source.name in placed) for source in learned.sources),
-            *(mount.sentence() for mount in mounts),
+            *(said for mount in mounts if (said := mount.untold())),
             *((gyro.sentence(),) if gyro is not None and gyro.sentence() else ()),
             *unused_measurements(log, settings, smooth=smooth),
             *unused_wheels(log, settings, learned.kept, input_name),

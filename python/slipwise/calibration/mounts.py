@@ -14,9 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.calibration.mount_windows import LATE, LATEST, YAW, Left, Windows, X, Y, left_of_all, windows_in
-from slipwise.export.mounts import Mounted
+from slipwise.calibration.mount_windows import LATEST, YAW, Left, Windows, X, Y, left_of_all, windows_in
 from slipwise.logs.log import Run
+from slipwise.models.model import Model
+from slipwise.models.mounted import UNITS, Mounted, mount_row
+from slipwise.models.parameter_table import ParameterTable
 
 Floats = NDArray[np.float64]
 
@@ -44,27 +46,39 @@ class Mount:
     seconds: float  # of driving that both saw
     heading: bool  # whether it measures headings; without them, its yaw says nothing
 
+    @property
+    def known(self) -> list[int]:
+        """Which of the numbers the drive tells."""
+        told = np.flatnonzero(self.std <= _KNOWN).tolist()
+        return [i for i in told if i != YAW or self.heading]
+
     def mounted(self) -> Mounted:
         """Return what the drive tells of it."""
-        known = [
-            (float(value), float(std)) if std <= most else None
-            for value, std, most in zip(self.value, self.std, _KNOWN, strict=True)
-        ]
-        return Mounted(self.name, known[X], known[Y], known[YAW] if self.heading else None, known[LATE])
+        x, y, yaw, late = (
+            (float(self.value[i]), float(self.std[i])) if i in self.known else None for i in range(4)
+        )
+        return Mounted(self.name, x, y, yaw, late)
 
-    def sentence(self) -> str:
-        """Say where the source sits, and what the drive does not tell of it."""
-        found = self.mounted()
-        said = found.sentence()
-        if not said:
-            return f"{self.seconds:.0f} s do not tell where {self.name} sits beside {self.beside}: turn more"
-        unknown = [
-            what
-            for what, place in (("how far ahead", found.x), ("how far to a side", found.y))
-            if place is None
+    def added_to(self, table: ParameterTable) -> ParameterTable:
+        """Return the table of a model with what the drive tells of it."""
+        estimates = list(zip(self.value.tolist(), self.std.tolist(), strict=True))
+        rows = [
+            mount_row(self.name, self.beside, list(UNITS)[i], estimates[i], float(_PRIOR_STD[i]))
+            for i in self.known
         ]
-        rest = f"; it turned too little to tell {' and '.join(unknown)} it sits" if unknown else ""
-        return f"{said}, by {self.seconds:.0f} s beside {self.beside or 'the first source'}{rest}"
+        return table.beside(rows, self.covariance[np.ix_(self.known, self.known)])
+
+    def untold(self) -> str:
+        """Say what the drive does not tell of where it sits; empty where it tells it."""
+        places = (("how far ahead", X), ("how far to a side", Y))
+        unknown = [what for what, place in places if place not in self.known]
+        if not unknown:
+            return ""
+        beside = self.beside or "the first source"
+        return (
+            f"{self.seconds:.0f} s beside {beside} do not tell {' and '.join(unknown)} {self.name} sits: "
+            "turn more"
+        )
 
     @property
     def std(self) -> Floats:
@@ -85,6 +99,14 @@ def mounts_of(runs: Sequence[Run], place: tuple[float, float, float] = (0.0, 0.0
     beside = next((run.source for run in runs if run.source), "")
     found = (_mount(name, beside, runs, place) for name in names)
     return tuple(each for each in found if each is not None)
+
+
+def holding_mounts(model: Model, mounts: Sequence[Mount]) -> Model:
+    """Return the model with what the drive tells of the mounts as rows."""
+    table = model.table
+    for mount in mounts:
+        table = mount.added_to(table)
+    return model.with_table(table) if mounts else model
 
 
 def _mount(name: str, beside: str, runs: Sequence[Run], place: tuple[float, float, float]) -> Mount | None:

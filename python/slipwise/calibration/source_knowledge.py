@@ -14,6 +14,8 @@ from slipwise.logs.fixes import FIXES
 
 Floats = NDArray[np.float64]
 
+_KNOWN = np.array((0.1, 0.1, 0.1, 0.1))  # s, m, m, rad: standard deviations up to which a number is said
+
 
 @dataclass(frozen=True, eq=False)
 class LearnedSource:
@@ -32,9 +34,9 @@ class LearnedSource:
     def sentence(self, *, placed: bool = False) -> str:
         """Say it in words; its place and clock are `placed` where both sources together told them better."""
         said = [f"{self.segments} segments are those of {self.name or 'the first source'}"]
-        if self.late_std > 0.0 and not placed:
+        if 0.0 < self.late_std <= _KNOWN[0] and not placed:
             said.append(f"stamped {self.late:+.3f} s late (± {self.late_std:.3f} s)")
-        if self.sensor_std.any() and not placed:
+        if self.sensor_std.any() and np.all(self.sensor_std <= _KNOWN[1:]) and not placed:
             x, y, yaw = self.sensor.tolist()
             said.append(f"sitting at {x:.2f} m, {y:.2f} m, {yaw:.3f} rad")
         sizes = [

@@ -203,7 +203,8 @@ def _make(model: Model, name: str, to: TargetName, options: ExportOptions) -> _M
         target = find_target(to.value)
         return _Made([(target, export_model(model, target.name, name=name, options=options, force=True))], [])
     made = _Made([], [])
-    for target in (*TARGETS, *((find_target("mounts"),) if options.no_side_slip else ())):
+    mounts = options.no_side_slip or any(row.stage == "mount" for row in model.content.parameters)
+    for target in (*TARGETS, *((find_target("mounts"),) if mounts else ())):
         try:
             exported = export_model(model, target.name, name=name, options=options, force=True)
         except ModelError as problem:

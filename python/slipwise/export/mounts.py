@@ -4,49 +4,17 @@
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from html import escape  # xml.sax.saxutils imports ssl
 
 from slipwise.errors import ModelError
 from slipwise.export.origin import one_line
 from slipwise.models.model import Model
+from slipwise.models.mounted import Estimate, Mounted
 from slipwise.models.sensor_look import sensor_look
-from slipwise.number_text import estimate_text
 
-Estimate = tuple[float, float]  # value and standard deviation
 _FRAME = "pose_sensor"  # of a sensor without a name
-
-
-@dataclass(frozen=True)
-class Mounted:
-    """A sensor in base_link; None stands for what is not known."""
-
-    name: str
-    x: Estimate | None  # m ahead
-    y: Estimate | None  # m to the left
-    yaw: Estimate | None  # rad to the left
-    late: Estimate | None = None  # s that its stamps are later than those of the first source
-    first: bool = False  # whether it is the one of [sensor_extrinsics]
-
-    def sentence(self) -> str:
-        """Say where it sits; empty where nothing is known."""
-        said = [
-            f"{estimate_text(abs(place[0]), place[1])} m {plus if place[0] >= 0.0 else minus}"
-            for place, plus, minus in ((self.x, "ahead", "behind"), (self.y, "to the left", "to the right"))
-            if place is not None
-        ]
-        parts = [f"sits {' and '.join(said)}"] if said else []
-        if self.yaw is not None:
-            side = "left" if self.yaw[0] >= 0.0 else "right"
-            degrees = estimate_text(math.degrees(abs(self.yaw[0])), math.degrees(self.yaw[1]))
-            parts.append(f"is turned by {degrees} deg to the {side}")
-        if self.late is not None:
-            order = "later" if self.late[0] >= 0.0 else "earlier"
-            parts.append(f"is stamped {estimate_text(abs(self.late[0]), self.late[1])} s {order}")
-        return f"{self.name} {', '.join(parts)}" if parts else ""
 
 
 def mount_of_look(model: Model) -> Mounted:
@@ -128,4 +96,5 @@ def _settings(mount: Mounted) -> list[str]:
     if mount.first:
         return ["[sensor_extrinsics]", *numbers]
     late = [] if mount.late is None else [f"late = {_value(mount.late):g}"]
-    return ["[[pose_sources]]", f"name = {json.dumps(mount.name)}", *numbers, *late]
+    rest = [] if len(numbers) == 3 else ["learn_extrinsics = true"]  # what is not known is not 0
+    return ["[[pose_sources]]", f"name = {json.dumps(mount.name)}", *numbers, *rest, *late]

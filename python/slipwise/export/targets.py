@@ -23,6 +23,7 @@ from slipwise.models.axes import refuse_sideways
 from slipwise.models.body_force import without_force
 from slipwise.models.inputs import InputName
 from slipwise.models.model import Model
+from slipwise.models.mounted import UNITS, mounts_in
 
 
 @dataclass(frozen=True)
@@ -84,14 +85,22 @@ def _c_header(model: Model, _: ExportOptions, origin: list[str]) -> Exported:
 
 
 def _mounts(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
-    found = mount_of_look(model)
-    if not options.no_side_slip:
-        raise ModelError(
-            f"one source of poses does not tell side slip from a mount ({found.sentence()})",
-            advice="add --no-side-slip where the robot does not slip sideways",
-        )
-    values = {name: getattr(found, name)[0] for name in ("x", "y", "yaw") if getattr(found, name)}
-    return Exported(mounts_text((found,), origin), values)
+    found = mounts_in(model)
+    if options.no_side_slip or not found:
+        look = mount_of_look(model)
+        if not options.no_side_slip:
+            raise ModelError(
+                f"one source of poses does not tell side slip from a mount ({look.sentence()})",
+                advice="add --no-side-slip where the robot does not slip sideways",
+            )
+        found = (look, *found)
+    values = {
+        number if mount.first else f"{mount.name} {number}": estimate[0]
+        for mount in found
+        for number in UNITS
+        if (estimate := getattr(mount, number)) is not None
+    }
+    return Exported(mounts_text(found, origin), values)
 
 
 _WHEELS = {"wheel_separation", "logged_separation_multiplier"}
@@ -130,7 +139,7 @@ TARGETS = (
     Target("ardupilot", "ardupilot.param", _firmware(ardupilot), reads=_FIRMWARE | {"ardupilot"}),
     Target("c-header", "model.h", _c_header, sideways=True),
 )
-#: Of models whose slip looks like a mount, where the user says that it is one.
+#: Of models with several sources of poses, or whose slip is said to be one.
 MOUNTS = Target("mounts", "sensor_mounts.txt", _mounts, sideways=True, reads=frozenset({"no_side_slip"}))
 
 

@@ -99,6 +99,8 @@ def heading_from_path(t: Floats, x: Floats, y: Floats, inputs: Inputs | None) ->
     Returns:
         yaw [N] in rad, and whether the robot moved enough to have a course [N].
     """
+    if len(t) == 0:
+        return np.zeros(0), np.zeros(0, bool)
     path = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
     i = np.maximum(np.searchsorted(path, path - _HALF_CHORD, side="right") - 1, 0)
     j = np.minimum(np.searchsorted(path, path + _HALF_CHORD), len(path) - 1)

@@ -21,7 +21,7 @@ from slipwise.logs.measurements import Command, KnownForce, Measurement, Pose, R
 from slipwise.logs.options import LogOptions
 from slipwise.logs.readings import READINGS
 from slipwise.logs.streams import INCOMPLETE, WITHOUT_FIX, believed
-from slipwise.logs.tidy import HELD_BY, UNNAMED, pose_columns
+from slipwise.logs.tidy import HELD_BY, UNNAMED, UNSAID, pose_columns
 from slipwise.logs.tidy_columns import FORCE, InputColumns, command_columns, wheel_columns
 from slipwise.logs.unheeded import LINES, refuse_unheeded
 from slipwise.logs.vocabulary import BY_NAME, measured_by
@@ -68,7 +68,7 @@ class RowReader:
     def restart(self) -> None:
         """Another run begins."""
         self._wheels: dict[str, float] = {}  # the last whole readings of wheels, with their t
-        self._held: tuple[object, ...] = ()  # the last pose
+        self._held: dict[str, tuple[object, ...]] = {}  # the last pose of each source
         self._force = (0.0, 0.0)
 
     def renamed(self, names: Sequence[str]) -> list[str]:
@@ -194,14 +194,18 @@ class RowReader:
     def _is_new(self, view: _View, pose: Mapping[str, float], needed: Sequence[float]) -> bool:
         """Whether a pose was measured in this row, rather than held, or none."""
         if "pose_new" in view.names:
-            return view.now_of("pose_new") == 1.0
+            said = view.now_of("pose_new")
+            if said not in (0.0, 1.0) and any(map(math.isfinite, needed)):
+                view.leave_out(UNSAID)
+            return said == 1.0
         if not any(map(math.isfinite, needed)):
             return False
         held = (*(repr(pose.get(name)) for name in HELD_BY), text_of(view.cells, "frame"))
-        if held == self._held:
+        source = text_of(view.cells, "source")
+        if held == self._held.get(source):
             view.leave_out(HELD)
             return False
-        self._held = held
+        self._held[source] = held
         return True
 
     def _pose(self, view: _View, pose: Mapping[str, float], source: str, fix: str) -> Pose:

@@ -60,6 +60,7 @@ from slipwise.logs.vocabulary import BY_NAME, NUMERIC, POSE_COLUMNS, TEXT
 
 HELD_BY = ("x", "y", "yaw", "z", "roll", "pitch")  # a row that repeats these holds the pose before
 UNNAMED = "poses whose rows name no source, beside others that do"
+UNSAID = "poses whose pose_new is neither 0 nor 1"
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,13 +194,18 @@ def _extra(table: Table, notes: list[str]) -> dict[str, NDArray[Any]]:
 
 def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]) -> Bools:
     """Return the rows in which a pose was measured rather than held."""
-    if "pose_new" in table.names:
-        return np.asarray(table.numbers("pose_new", tally) == 1.0)
     there = np.isfinite(pose["x"]) | np.isfinite(pose["y"])
     if "yaw" in pose:
         there |= np.isfinite(pose["yaw"])
+    if "pose_new" in table.names:
+        said = table.numbers("pose_new", tally)
+        unsaid = there & (said != 0.0) & (said != 1.0)
+        tally.add("unsaid", UNSAID, count=int(unsaid.sum()), where=table.place(int(np.argmax(unsaid))))
+        return np.asarray(said == 1.0)
     where = np.flatnonzero(there)
-    same = np.ones(max(len(where) - 1, 0), bool)
+    sources = table.codes("source")[0] if "source" in table.names else np.zeros(len(table), np.int64)
+    where = where[np.argsort(sources[where], kind="stable")]  # each source holds its own
+    same = np.diff(sources[where]) == 0
     for name in (name for name in (*HELD_BY, "frame") if name in pose):
         values = pose[name][where]
         same &= (values[1:] == values[:-1]) | (np.isnan(values[1:]) & np.isnan(values[:-1]))
@@ -297,7 +303,8 @@ def _by_source(whole: RawStream, number: Ints, count: int) -> Iterator[RawStream
     """Yield what each source measured, in the order of its stamps: sources may come late."""
     for i in range(count):
         stream = whole.in_time(number == i)
-        if "yaw" in stream.columns and np.isnan(stream.columns["yaw"]).all():
+        yaw = stream.columns.get("yaw")
+        if yaw is not None and len(yaw) and np.isnan(yaw).all():
             stream = replace(stream, columns={n: v for n, v in stream.columns.items() if n != "yaw"})
         yield stream
 

@@ -67,7 +67,8 @@ def _newer(model: Model) -> list[str]:
     """What the schema has room for and this version does not use yet: it must not be left out in silence."""
     content, rows = model.content, model.content.parameters
     found = [name for name in ("branches", "message") if getattr(content, name)]
-    found += [f"{row.name} of {where}" for row in rows if (where := row.sensor or row.branch)]
+    found += [f"{row.name} of {row.branch}" for row in rows if row.branch]
+    found += [f"{row.name} of {row.sensor}" for row in rows if row.sensor and row.stage != "mount"]
     return [*found, *(f"{row.name} of {row.input}s" for row in rows if row.input is not None)]
 
 

@@ -33,7 +33,7 @@ Dof = Annotated[Number, Field(ge=LEAST_DOF, le=MOST_DOF, allow_inf_nan=False)]
 Triple = Annotated[list[NotNegative], Field(min_length=3, max_length=3)]
 Pair = Annotated[list[NotNegative], Field(min_length=2, max_length=2)]
 Span = Annotated[list[Finite], Field(min_length=2, max_length=2)]
-Stage = Literal["slip", "force", "actuator", "clock", "sensor", "limits", "car"]
+Stage = Literal["slip", "force", "actuator", "clock", "sensor", "limits", "car", "mount"]
 
 
 class Section(BaseModel):
@@ -63,7 +63,8 @@ class Parameter(Section):
     identifiable: bool  # the log says more about it than the prior does
     at: Finite | None = None  # throttle or steering, of a value on a curve
     input: InputName | None = None  # where a model takes both inputs; None: it is of either
-    sensor: str = ""  # where several sensors have places and clocks of their own
+    sensor: str = ""  # whose place or clock it is, where that is a further source of poses
+    beside: str = ""  # the source beside which it is that, by name
     branch: str = ""  # of the slip, where it has several
 
 

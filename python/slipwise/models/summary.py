@@ -14,6 +14,7 @@ from slipwise.models.body_lag import body_lag_sentences
 from slipwise.models.channel_words import response_sentences
 from slipwise.models.limits import KINDS
 from slipwise.models.model import Model
+from slipwise.models.mounted import mount_sentences
 from slipwise.models.parameter_table import PhysicalParameter, physical_parameters
 from slipwise.models.schema import HeldOut
 from slipwise.models.sensor_look import sensor_sentences
@@ -72,6 +73,7 @@ def summarise(model: Model) -> Summary:
         *_limit_sentences(parameters),
         *_offset_sentences(parameters, model),
         *sensor_sentences(model),
+        *mount_sentences(model),
     ]
     prediction = tuple(_prediction_sentences(model))
     return Summary((*sentences, *prediction), parameters, prediction)

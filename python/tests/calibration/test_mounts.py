@@ -10,14 +10,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sample_models import make_model, named
 from sample_noise import lasting_noise
 from sample_sources import Source, run_of, seen_by, true_run
 
 from slipwise.calibration import Calibration, calibrate
 from slipwise.calibration.mount_windows import LATE, YAW, X, Y
-from slipwise.calibration.mounts import mounts_of
+from slipwise.calibration.mounts import mounts_of, holding_mounts
 from slipwise.calibration.source_tables import PoseSourceTable
+from slipwise.export import export_model
 from slipwise.logs import Log, Poses, Run, open_log
+from slipwise.models.difference import differences
+from slipwise.models.model import load_model
+from slipwise.models.mounted import mounts_in
+from slipwise.models.summary import summarise
 
 ARM, TURNED, LATER = (0.45, -0.2), 0.035, 0.12
 
@@ -123,7 +129,7 @@ def test_a_shifted_copy_of_a_real_log_does_no_harm_where_nobody_says_where_it_si
     alone, beside = (calibrate(each, input="wheel") for each in (log, both))
     assert np.all(errors_of(beside) < 1.15 * errors_of(alone)), (errors_of(alone), errors_of(beside))
     assert [mount.name for mount in beside.mounts] == ["copy"]
-    assert any(note.startswith("copy sits 0.4") for note in beside.notes)
+    assert "copy sits 0.4" in str(summarise(beside.model))
 
 
 def errors_of(calibration: Calibration) -> np.ndarray:
@@ -158,7 +164,26 @@ def test_a_drive_straight_ahead_does_not_tell_an_arm() -> None:
     assert found.late is None
     assert found.yaw is not None
     assert abs(found.yaw[0]) < 0.002
-    assert "turned too little to tell how far ahead and how far to a side it sits" in mount.sentence()
+    unknown = "how far ahead and how far to a side other sits"
+    assert mount.untold().endswith(f" s beside first do not tell {unknown}: turn more")
+
+
+def test_a_model_keeps_mounts_and_says_which_sensor_was_moved(drives: list[Drive], tmp_path: Path) -> None:
+    models, moved = [], (0.0, 0.05)
+    for ahead, (run, random) in zip(moved, drives, strict=False):
+        random = deepcopy(random)
+        rtk = Source(std=(0.02, 0.01), late=LATER, sensor=(ARM[0] + ahead, ARM[1], TURNED))
+        seen = seen_by(run.poses, Source(), random), seen_by(run.poses, rtk, random)
+        models.append(holding_mounts(make_model(named("edd-2")), mounts_of([run_of(run, seen[0], rtk=seen[1])])))
+    kept = load_model(models[0].save(tmp_path / "model.yaml"))
+    assert kept == models[0]
+    assert "rtk sits 0.4" in str(summarise(kept))
+    (mount,) = mounts_in(kept)
+    told = [each[0] for each in (mount.x, mount.y, mount.yaw, mount.late) if each]
+    assert np.allclose(told, (*ARM, TURNED, LATER), atol=0.01)
+    assert "[[pose_sources]]" in export_model(kept, "mounts", name="m", force=True).text
+    (found,) = [row for row in differences(*models) if row.different]
+    assert found.name.startswith("sensor_x(rtk")
 
 
 def test_the_place_of_a_source_is_learned_unless_the_settings_give_one() -> None:

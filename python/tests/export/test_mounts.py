@@ -12,7 +12,8 @@ from sample_models import make_model, named
 
 import slipwise as sw
 from slipwise.errors import ModelError
-from slipwise.export.mounts import Mounted, mounts_text
+from slipwise.export.mounts import mounts_text
+from slipwise.models.mounted import Mounted
 
 RTK = Mounted('/rtk "1"\n', (0.4512, 0.001), (-0.2, 0.001), (0.0348, 0.0003), (0.12, 0.001))
 
@@ -37,6 +38,8 @@ def test_what_is_not_known_is_not_said() -> None:
     mount = Mounted("gnss", (0.3, 0.01), None, None)
     assert mount.sentence() == "gnss sits 0.300 ± 0.010 m ahead"
     assert not re.search("^(y|yaw) =", mounts_text((mount,), ()), re.MULTILINE)
+    (table,) = tomllib.loads(mounts_text((mount,), ()).rpartition("settings file:")[2])["pose_sources"]
+    assert sw.make_settings({"pose_sources": [table]}).pose_sources[0].learns_place
     assert Mounted("gnss", None, None, None).sentence() == ""
 
 

@@ -28,6 +28,7 @@ from slipwise.live.samples import (
     Wheels,
 )
 from slipwise.logs import LogOptions
+from slipwise.logs.tidy import UNSAID
 
 
 def test_a_csv_line_holds_what_its_filled_cells_say() -> None:
@@ -157,6 +158,18 @@ def test_a_pose_that_is_repeated_is_held_unless_it_is_said_to_be_new() -> None:
     (held,) = reader.read(line % (2, ""))
     assert isinstance(held, Unusable)
     assert reader.read(line % (3, ', "pose_new": 1')) == [Pose(3.0, 1.0, 2.0, 3.0)]
+
+
+def test_each_source_holds_its_own_poses() -> None:
+    reader, line = LineReader(), '{"t": %s, "x": 1, "y": 2, "yaw": 3, "source": "%s"}'
+    read = [reader.read(line % (t, source))[0] for t, source in ((1, "a"), (2, "b"), (3, "a"), (4, "b"))]
+    assert [isinstance(each, Unusable) for each in read] == [False, False, True, True]
+
+
+def test_a_pose_of_which_nobody_says_whether_it_is_new_is_counted() -> None:
+    (said,) = LineReader().read('{"t": 1, "x": 1, "y": 2, "yaw": 3, "pose_new": 2}')
+    assert isinstance(said, Unusable)
+    assert UNSAID in said.reason
 
 
 def test_lines_without_names_have_columns_by_number() -> None:

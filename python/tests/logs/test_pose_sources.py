@@ -33,6 +33,24 @@ def table(path: Path) -> Path:
     return path
 
 
+@pytest.mark.parametrize("yaw", ["0", ""])
+def test_a_run_may_lack_a_source_that_another_has(tmp_path: Path, yaw: str) -> None:
+    seen = [("a", "lidar"), ("a", "rtk"), ("b", "lidar")]
+    rows = [f"{run},{0.1 * k:.1f},1,0,{0.1 * k:.1f},0,{yaw},{name}" for k in range(20) for run, name in seen]
+    (tmp_path / "a.csv").write_text("\n".join(["run,t,odo_v,odo_omega,x,y,yaw,source", *rows, ""]))
+    first, second = open_log(tmp_path / "a.csv").runs
+    assert (len(first.others["rtk"]), len(second.others["rtk"])) == (20, 0)
+    assert len(second.poses) == 20
+
+
+def test_each_source_holds_its_own_poses(tmp_path: Path) -> None:
+    rows = [f"{0.1 * k:.1f},1,0,{k // 4},0,0,{name}" for k in range(40) for name in (("a", "b")[k % 2],)]
+    (tmp_path / "a.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y,yaw,source", *rows, ""]))
+    (run,) = open_log(tmp_path / "a.csv").runs
+    assert np.allclose(run.poses.t, 0.4 * np.arange(10))
+    assert np.allclose(run.others["b"].t, 0.4 * np.arange(10) + 0.1)
+
+
 def test_a_column_says_whose_a_pose_is(tmp_path: Path) -> None:
     log = open_log(table(tmp_path / "a.csv"))
     (run,) = log.runs

@@ -48,6 +48,12 @@ def test_held_poses_are_not_taken_as_fresh(tmp_path: Path) -> None:
     assert log.runs[0].poses.t.tolist() == [0.0, 0.2]
 
 
+def test_a_pose_of_which_nobody_says_whether_it_is_new_is_counted(tmp_path: Path) -> None:
+    log = open_log(table(tmp_path, "0,1,0,0,0,0,1", "0.1,1,0,0.1,0,0,", "0.2,1,0,,,,", "0.3,1,0,0.3,0,0,1"))
+    assert log.runs[0].poses.t.tolist() == [0.0, 0.3]
+    assert counts(log) == {"unsaid": 1}
+
+
 def test_without_pose_new_a_repeated_pose_is_held(tmp_path: Path) -> None:
     header = "t,cmd_v,cmd_omega,x,y,yaw"
     log = open_log(table(tmp_path, "0,1,0,0,0,0", "0.1,1,0,0,0,0", "0.2,1,0,0.2,0,0", header=header))
