@@ -17,7 +17,7 @@ from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.model_content import ModelFacts, model_content
-from slipwise.calibration.mounts import mounts_of, holding_mounts
+from slipwise.calibration.mounts import holding_mounts, mounts_of
 from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of
 from slipwise.calibration.prepared_run import (

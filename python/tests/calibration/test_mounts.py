@@ -16,7 +16,7 @@ from sample_sources import Source, run_of, seen_by, true_run
 
 from slipwise.calibration import Calibration, calibrate
 from slipwise.calibration.mount_windows import LATE, YAW, X, Y
-from slipwise.calibration.mounts import mounts_of, holding_mounts
+from slipwise.calibration.mounts import holding_mounts, mounts_of
 from slipwise.calibration.source_tables import PoseSourceTable
 from slipwise.export import export_model
 from slipwise.logs import Log, Poses, Run, open_log
@@ -174,7 +174,9 @@ def test_a_model_keeps_mounts_and_says_which_sensor_was_moved(drives: list[Drive
         random = deepcopy(random)
         rtk = Source(std=(0.02, 0.01), late=LATER, sensor=(ARM[0] + ahead, ARM[1], TURNED))
         seen = seen_by(run.poses, Source(), random), seen_by(run.poses, rtk, random)
-        models.append(holding_mounts(make_model(named("edd-2")), mounts_of([run_of(run, seen[0], rtk=seen[1])])))
+        models.append(
+            holding_mounts(make_model(named("edd-2")), mounts_of([run_of(run, seen[0], rtk=seen[1])]))
+        )
     kept = load_model(models[0].save(tmp_path / "model.yaml"))
     assert kept == models[0]
     assert "rtk sits 0.4" in str(summarise(kept))
