@@ -45,7 +45,7 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
   for (const auto& row : attitudes.rowwise()) {
     run.attitudes.push_back({row[0], row[1], row[2]});
   }
-  if (with_source && !(poses.middleCols(7, 2).minCoeff() >= 0.0)) {
+  if (with_source && !(poses.middleCols(7, 2).array() >= 0.0).all()) {
     throw std::invalid_argument("numbers of sources and fixes must be 0 or more");
   }
   for (const auto& row : poses.rowwise()) {

@@ -50,6 +50,15 @@ def test_a_list_of_inputs_in_which_one_is_missing_is_refused() -> None:
         _core.rts_smooth(MODEL, of_type("Estimate"), [None], segment, noise, *settings)  # type: ignore[list-item]
 
 
+def test_a_run_without_poses_may_be_of_a_log_that_tells_sources_apart() -> None:
+    nothing = [np.zeros((0, columns)) for columns in (4, 4, 3, 9)]
+    assert len(_core.cut_segments(_core.StreamSettings(), [_core.Recording(*nothing)]).segments) == 0
+    wrong = np.zeros((1, 9))
+    wrong[0, 7] = -1.0
+    with pytest.raises(ValueError, match="numbers of sources and fixes must be 0 or more"):
+        _core.Recording(*nothing[:3], wrong)
+
+
 @pytest.mark.parametrize("stamps", [(5.95, 5.95), (float("nan"), 6.0), (6.1, 6.0)])
 def test_stamps_of_future_inputs_that_do_not_increase_are_refused(stamps: tuple[float, float]) -> None:
     future = np.column_stack((stamps, np.zeros((2, 3))))
