@@ -58,7 +58,7 @@ RolloutModel ModelFile::model() const {
       kept.push_back(i);
     } else if (row.stage == "limits") {
       limit_of(found.limits, row.name) = row.value;
-    } else if (row.stage != "clock" && row.stage != "sensor") {
+    } else if (row.stage != "clock" && row.stage != "sensor" && row.stage != "mount") {
       throw std::invalid_argument("the model has a stage '" + row.stage + "', which rollouts do not know");
     }
   }

@@ -16,8 +16,10 @@ Eigen::MatrixXd towed_turns(const Eigen::Ref<const Eigen::VectorXd>& forward,
   if (forward.size() != rotation.size()) {
     throw std::invalid_argument("each step needs a way and a turn");
   }
-  if (parts < 1 || !std::ranges::all_of(trailers, [](const Trailer& trailer) { return trailer.length > 0.0; })) {
-    throw std::invalid_argument("a trailer needs a length above 0, and each step at least one part");
+  const auto long_enough = [](const Trailer& trailer) { return trailer.length > 0.0; };
+  if (parts < 1 || !(most_folded >= 0.0) || !std::ranges::all_of(trailers, long_enough)) {
+    throw std::invalid_argument(
+        "a trailer needs a length above 0, a fold of 0 or more, and steps of at least one part");
   }
   Eigen::MatrixXd turned(forward.size(), std::ssize(trailers));
   for (Eigen::Index column = 0; column < turned.cols(); ++column) {

@@ -29,7 +29,8 @@ ModelFile sample() {
                {"sensor_yaw", "sensor", 0.1},
                {"limits.speed.saturation", "limits", 1.2},
                {"limits.side.slew_rate_down", "limits", 2.0},
-               {"limits.wheel_separation", "limits", 0.5}};
+               {"limits.wheel_separation", "limits", 0.5},
+               {"sensor_x(rtk beside lidar)", "mount", 0.4}};
   const std::size_t size = file.rows.size();
   for (std::size_t i = 0; i < size * size; ++i) {
     file.covariance.push_back(static_cast<double>(i));
@@ -41,7 +42,7 @@ TEST_CASE("parameters of the robot are kept in their order, those of its sensors
   const RolloutModel model = sample().model();
   REQUIRE(model.parameters.size() == model.motion.size());
   CHECK(model.parameters.isApprox((Eigen::VectorXd(6) << -0.1, -0.3, -1.0, -1.5, -2.0, -2.5).finished()));
-  CHECK(model.covariance(5, 3) == 5.0 * 13.0 + 3.0);
+  CHECK(model.covariance(5, 3) == 5.0 * 14.0 + 3.0);
   CHECK(model.motion.learned().dynamics);
   CHECK_FALSE(model.motion.learned().clock_offset);
 }

@@ -34,6 +34,7 @@ TEST_CASE("a trailer behind the axle first turns against the robot; straight on 
   CHECK(turned(1, 0) == 0.0);
   CHECK_THROWS_AS(towed_turns(Eigen::Vector3d::Zero(), rotation, trailers, kMostFolded, 1), std::invalid_argument);
   CHECK_THROWS_AS(towed_turns(rotation, rotation, trailers, kMostFolded, 0), std::invalid_argument);
+  CHECK_THROWS_AS(towed_turns(rotation, rotation, trailers, -1.0, 1), std::invalid_argument);
   const std::array pointless{Trailer{0.0, 1.0, 0.3}};
   CHECK_THROWS_AS(towed_turns(rotation, rotation, pointless, kMostFolded, 1), std::invalid_argument);
 }

@@ -17,7 +17,7 @@ from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.model_content import ModelFacts, model_content
-from slipwise.calibration.mounts import holding_mounts, mounts_of
+from slipwise.calibration.mounts import Mount, holding_mounts, mounts_of
 from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of
 from slipwise.calibration.prepared_run import (
@@ -106,11 +106,11 @@ def calibrate_by(
     learned = learn(windows)
     found = found_contradictions(learned, windows.drive, (log, input_name, settings))
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
-    mounts = mounts_of(log.runs, settings.sensor_extrinsics.pose) if learned.sources else ()
+    mounts = _mounts(learned, log, settings)
     gyro = gyro_clock(log.runs)
     placed = {mount.name for mount in mounts}
     return Calibration(
-        holding_mounts(model_of(content, log, found), mounts),
+        model_of(content, log, found, mounts),
         judged.verdict,
         learned.history,
         (*log.left_out, *unused_runs(log, input_name), *windows.left_out),
@@ -141,7 +141,7 @@ def model_of_log(
     windows = learning_windows(prepare_run(log, input_name), input_name, settings)
     found = found_contradictions(learned, windows.drive, (log, input_name, settings), start)
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
-    return model_of(content, log, found), judged.judgement
+    return model_of(content, log, found, _mounts(learned, log, settings)), judged.judgement
 
 
 def found_contradictions(
@@ -257,14 +257,21 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     )
 
 
-def model_of(content: schema.ModelFile, log: Log, found: tuple[Finding, ...]) -> Model:
-    """Make the model of a log, of which `found` is what contradicts itself.
+def _mounts(learned: Learned, log: Log, settings: Settings) -> tuple[Mount, ...]:
+    """Where sources of poses sit beside the first, where some were learned from."""
+    return mounts_of(log.runs, settings.sensor_extrinsics.pose) if learned.sources else ()
+
+
+def model_of(
+    content: schema.ModelFile, log: Log, found: tuple[Finding, ...], mounts: tuple[Mount, ...] = ()
+) -> Model:
+    """Make the model of a log, of which `found` is what contradicts itself, with what it tells of mounts.
 
     Raises:
         LogError: no model has such parameters; such a log may lead to them.
     """
     try:
-        return Model(content)
+        return holding_mounts(Model(content), mounts)
     except ModelError as problem:
         raise LogError(
             f"no robot explains this log: {'; '.join(each.sentence for each in found) or problem.what}",

@@ -171,6 +171,7 @@ def _parameter(types: Types, row: Parameter, text: Callable[[str], str]) -> Any:
         at=math.nan if row.at is None else row.at,
         input=row.input or "",
         sensor=text(row.sensor),
+        beside=text(row.beside),
         branch=text(row.branch),
     )
 

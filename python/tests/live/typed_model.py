@@ -31,6 +31,7 @@ def assert_same_numbers(read: Any, wanted: ModelFile) -> None:
             "at": None if math.isnan(row.at) else row.at,
             "input": row.input or None,
             "sensor": row.sensor,
+            "beside": row.beside,
             "branch": row.branch,
         }
         for row in read.parameters

@@ -17,7 +17,7 @@ struct Trailer {
 /// Returns the turns [rad] of trailers in each of K steps, [K, trailers]: L psi' = v sin(phi) - b omega cos(phi) with
 /// the fold phi, which is 0 before the first step and at most `most_folded` [rad]. `forward` [m] and `rotation` [rad]
 /// are the robot's, [K] both; each step is taken in `parts`, at least 1. Throws std::invalid_argument for a length of
-/// 0, no part, or another number of turns than of ways.
+/// 0, a fold below 0, no part, or another number of turns than of ways.
 Eigen::MatrixXd towed_turns(const Eigen::Ref<const Eigen::VectorXd>& forward,
                             const Eigen::Ref<const Eigen::VectorXd>& rotation, std::span<const Trailer> trailers,
                             double most_folded, int parts);
