@@ -39,7 +39,7 @@ from slipwise.calibration.shortage import shortage_advice, silence, unused_measu
 from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import LogFacts
 from slipwise.errors import LogError, ModelError, SettingsError
-from slipwise.logs.findings.checks import findings_in, findings_of_log
+from slipwise.logs.findings.checks import findings_in, findings_of_log, findings_of_others
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import Seen, WholeLog
 from slipwise.logs.findings.steering import Commanded
@@ -165,8 +165,10 @@ def found_contradictions(
         commanded=Commanded.of(log.runs),
     )
     unknown_after = settings.segment.unknown_after
+    first = findings_in(seen)
     return (
-        *findings_in(seen),
+        *first,
+        *findings_of_others(log, input_name, unknown_after, first),
         *findings_of_log(WholeLog(log, input_name, unknown_after)),
         *learned_before(log, start),
     )

@@ -29,7 +29,7 @@ from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts
 from slipwise.errors import SettingsError
-from slipwise.logs.findings.checks import findings_in, findings_of_log, not_shown_yet
+from slipwise.logs.findings.checks import findings_in, findings_of_log, findings_of_others, not_shown_yet
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import Seen, WholeLog
 from slipwise.logs.findings.steering import Commanded
@@ -111,6 +111,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         self._limits = None  # not saved
         self._start: Model | None = None  # that it began with
         self._of_log: tuple[Finding, ...] = ()  # what only a whole log shows
+        self._of_others: tuple[Finding, ...] = ()  # of further sources of poses in it
         self._log_known = False
         self.found: tuple[Finding, ...] = ()  # what was wrong at the last judgement of a stream
         self._clocks_compared = False
@@ -219,7 +220,9 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             made, judgement = model_of_log(learned, log, self._input, self._settings, self._start)
             return model_of(self._remembered(made.content, learned), log, ()), judgement
         sensors = Sensors(self._wheels, "", self._gyro_alone)
-        found = self.found = (*findings_in(self._seen(model.evidence)), *self._of_log)
+        first = findings_in(self._seen(model.evidence))
+        others = (each for each in self._of_others if each.kind not in {one.kind for one in first})
+        found = self.found = (*first, *others, *self._of_log)
         facts = LogFacts(found, (), self._input, self._positions, self._clocks_compared)
         judged = judge(to_judge(learned, self._settings, sensors, positions=self._positions), facts)
         slowest, fastest, right, left = model.range
@@ -245,6 +248,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         """Take what a whole log shows beside the measurements that are pushed from it."""
         unknown_after = self._settings.segment.unknown_after
         self._of_log, self._log_known = findings_of_log(WholeLog(log, self._input, unknown_after)), True
+        self._of_others = findings_of_others(log, self._input, unknown_after, ())
         self.know_clocks(compared=log.clocks_compared)
 
     def know_stream(self, found: tuple[Finding, ...]) -> None:

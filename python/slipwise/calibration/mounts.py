@@ -75,10 +75,9 @@ class Mount:
         if not unknown:
             return ""
         beside = self.beside or "the first source"
-        return (
-            f"{self.seconds:.0f} s beside {beside} do not tell {' and '.join(unknown)} {self.name} sits: "
-            "turn more"
-        )
+        why = "turn more, or look whether both are of this robot and their headings are right"
+        where = f"{' and '.join(unknown)} {self.name} sits"
+        return f"{self.seconds:.0f} s beside {beside} do not tell {where}: {why}"
 
     @property
     def std(self) -> Floats:

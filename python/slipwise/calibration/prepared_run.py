@@ -165,7 +165,9 @@ def _lacking(run: Run, input_name: str, *, alone: bool) -> str:
     if inputs is None or len(inputs) == 0:
         return MANY[input_name]
     if (len(gyro_rows(run)) if alone else len(run.poses)) < LEAST_MEASURED:
-        return "yaw rates" if alone else "poses"
+        others = [name for name, poses in run.others.items() if len(poses)]
+        of = f" of {run.source}, beside which {' and '.join(others)} are learned" if others else ""
+        return "yaw rates" if alone else f"poses{of}"
     return ""
 
 

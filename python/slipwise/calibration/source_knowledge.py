@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.logs.fixes import FIXES
+from slipwise.number_text import estimate_text
 
 Floats = NDArray[np.float64]
 
@@ -37,8 +38,8 @@ class LearnedSource:
         if 0.0 < self.late_std <= _KNOWN[0] and not placed:
             said.append(f"stamped {self.late:+.3f} s late (± {self.late_std:.3f} s)")
         if self.sensor_std.any() and np.all(self.sensor_std <= _KNOWN[1:]) and not placed:
-            x, y, yaw = self.sensor.tolist()
-            said.append(f"sitting at {x:.2f} m, {y:.2f} m, {yaw:.3f} rad")
+            x, y, yaw = map(estimate_text, self.sensor.tolist(), self.sensor_std.tolist())
+            said.append(f"sitting at x {x} m, y {y} m, yaw {yaw} rad")
         sizes = [
             f"{np.exp(np.log(ratio).mean()):.2g} times as large{f' of {fix}' if fix else ''}"
             for fix, ratio in self.noise.items()

@@ -129,7 +129,8 @@ def _show_differences(out: Output, models: dict[str, Model], rows: Sequence[Diff
     cells = [(row.name, _cell(row.first), _cell(row.second), row.unit, _z_text(row.z)) for row in shown]
     if cells:
         heads = [Column("number", whole=True), *(Column(name, True) for name in models)]
-        out.table("What differs", (*heads, Column("unit"), Column("z", True, whole=True)), cells)
+        title = "What differs" if different else "What one of them has alone"
+        out.table(title, (*heads, Column("unit"), Column("z", True, whole=True)), cells)
     if not same_drive(*models.values()):
         out.line("The models describe the drive otherwise: only what it does in all and limits are compared.")
     elif not same_terms(*models.values()):

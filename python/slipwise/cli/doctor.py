@@ -80,6 +80,6 @@ def _looked_at(log: Log) -> str:
     parts = {
         "commands": sum(len(run.commands) for run in log.runs if run.commands is not None),
         "wheel speeds": sum(len(run.wheels) for run in log.runs if run.wheels is not None),
-        "poses": sum(len(run.poses) for run in log.runs),
+        "poses": sum(len(each) for run in log.runs for each in (run.poses, *run.others.values())),
     }
     return ", ".join(f"{count} {name}" if count else f"no {name}" for name, count in parts.items())

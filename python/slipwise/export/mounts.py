@@ -66,9 +66,17 @@ def frame_name(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_]+", "_", name).strip("_") or _FRAME
 
 
+def _unknown(mount: Mounted) -> str:
+    """Say what is not known of where it sits; empty where all is."""
+    names = (("x", mount.x), ("y", mount.y), ("yaw", mount.yaw))
+    unknown = [name for name, estimate in names if estimate is None]
+    return f"{' and '.join(unknown)} of {one_line(mount.name)} not known: measure, and set" if unknown else ""
+
+
 def _transform(mount: Mounted) -> str:
     x, y, yaw = _pose(mount)
-    return (
+    unknown = _unknown(mount)
+    return (f"# {unknown}: " if unknown else "") + (
         f"ros2 run tf2_ros static_transform_publisher --x {x:g} --y {y:g} --z 0 --yaw {yaw:g} "
         f"--frame-id base_link --child-frame-id {frame_name(mount.name)}"
     )
@@ -77,7 +85,9 @@ def _transform(mount: Mounted) -> str:
 def _urdf(mount: Mounted) -> list[str]:
     x, y, yaw = _pose(mount)
     link = escape(frame_name(mount.name))
+    unknown = _unknown(mount).replace("--", "-")
     return [
+        *([f"<!-- {escape(unknown)} -->"] if unknown else []),
         f'<link name="{link}"/>',
         f'<joint name="{link}_joint" type="fixed">',
         '  <parent link="base_link"/>',

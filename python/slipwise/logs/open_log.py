@@ -184,14 +184,23 @@ def _named(log: Log, file: Path, path: Path) -> Log:
     return replace(log, runs=tuple(replace(run, files=files) for run in log.runs))
 
 
+def beside(first: str, run: Run) -> Run:
+    """Return a run whose first source of poses is that of all logs, where it has that one."""
+    if run.source == first or first not in run.others:
+        return run
+    others = {name: poses for name, poses in run.others.items() if name != first}
+    return replace(run, poses=run.others[first], others={run.source: run.poses, **others}, source=first)
+
+
 def joined(logs: list[Log]) -> Log:
-    """Return several logs as one; runs of the same name get that of their file."""
+    """Return several logs as one; runs of the same name get that of their file, their first source is one."""
     if len(logs) == 1:
         return logs[0]
+    first = next((run.source for log in logs for run in log.runs if run.source), "")
     names = Counter(name for log in logs for name in {run.name for run in log.runs})
     return Log(
         runs=tuple(
-            replace(run, name=f"{label}/{run.name}") if names[run.name] > 1 else run
+            beside(first, replace(run, name=f"{label}/{run.name}") if names[run.name] > 1 else run)
             for label, log in zip(_labels(logs), logs, strict=True)
             for run in log.runs
         ),

@@ -166,7 +166,10 @@ def pose_columns(table: Columns, options: LogOptions, tally: Tally, notes: list[
 
 def _sources(table: Table, notes: list[str]) -> tuple[Ints, tuple[str, ...]] | None:
     """Return whose pose is in each row; the first source is the one that comes first in the table."""
-    codes, names = table.codes("source")
+    raw, written = table.codes("source")
+    cleaned = [_source_name(name) for name in written]
+    names = list(dict.fromkeys(cleaned))
+    codes = np.array([names.index(name) for name in cleaned], np.int64)[raw]
     named = np.array([bool(name) for name in names])[codes]
     if not named.any():
         return None
@@ -177,6 +180,12 @@ def _sources(table: Table, notes: list[str]) -> tuple[Ints, tuple[str, ...]] | N
     if len(found) > 1:
         notes.append(f"{table.path.name}: poses are those of {found[0]}, beside them {', '.join(found[1:])}")
     return number, found
+
+
+def _source_name(written: str) -> str:
+    """Return a name without blanks around it; numbers of a column with empty cells are read as floats."""
+    name = written.strip()
+    return name.removesuffix(".0") if name.removesuffix(".0").isdigit() else name
 
 
 def _extra(table: Table, notes: list[str]) -> dict[str, NDArray[Any]]:
@@ -302,16 +311,15 @@ def _with_ends(commands: InputColumns) -> dict[str, Floats]:
 def _by_source(whole: RawStream, number: Ints, count: int) -> Iterator[RawStream]:
     """Yield what each source measured, in the order of its stamps: sources may come late."""
     for i in range(count):
-        stream = whole.in_time(number == i)
-        yaw = stream.columns.get("yaw")
-        if yaw is not None and len(yaw) and np.isnan(yaw).all():
-            stream = replace(stream, columns={n: v for n, v in stream.columns.items() if n != "yaw"})
-        yield stream
+        yield whole.in_time(number == i)
 
 
 def _poses(stream: RawStream, inputs: Inputs | None, tally: Tally) -> Poses:
-    """Make poses; of a table without a yaw column, positions."""
+    """Make poses; where no row has a yaw, positions."""
     stream = without_fix(stream, tally)
+    yaw = stream.columns.get("yaw")
+    if yaw is not None and len(yaw) and np.isnan(yaw).all():
+        stream = replace(stream, columns={n: v for n, v in stream.columns.items() if n != "yaw"})
     if "yaw" in stream.columns:
         return to_poses(stream, tally)
     return to_poses(with_course(clean_stream(stream, tally), inputs), tally)

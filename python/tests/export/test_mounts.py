@@ -38,6 +38,7 @@ def test_what_is_not_known_is_not_said() -> None:
     mount = Mounted("gnss", (0.3, 0.01), None, None)
     assert mount.sentence() == "gnss sits 0.300 ± 0.010 m ahead"
     assert not re.search("^(y|yaw) =", mounts_text((mount,), ()), re.MULTILINE)
+    assert "# y and yaw of gnss not known: measure, and set: ros2 run" in mounts_text((mount,), ())
     (table,) = tomllib.loads(mounts_text((mount,), ()).rpartition("settings file:")[2])["pose_sources"]
     assert sw.make_settings({"pose_sources": [table]}).pose_sources[0].learns_place
     assert Mounted("gnss", None, None, None).sentence() == ""

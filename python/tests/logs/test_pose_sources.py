@@ -51,6 +51,34 @@ def test_each_source_holds_its_own_poses(tmp_path: Path) -> None:
     assert np.allclose(run.others["b"].t, 0.4 * np.arange(10) + 0.1)
 
 
+def test_an_empty_yaw_column_is_no_column(tmp_path: Path) -> None:
+    rows = [f"{0.1 * k:.1f},1,0,{0.1 * k:.1f},0," for k in range(100)]
+    (tmp_path / "a.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y,yaw", *rows, ""]))
+    (run,) = open_log(tmp_path / "a.csv").runs
+    assert (len(run.poses), run.poses.course) == (100, True)
+
+
+def test_names_of_sources_are_without_blanks_and_whole_numbers_stay_so(tmp_path: Path) -> None:
+    rows = [f"{0.1 * k:.1f},1,0,{0.1 * k:.1f},0,0,{('1', '', '2')[k % 3]}" for k in range(99)]
+    (tmp_path / "a.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y,yaw,source", *rows, ""]))
+    (run,) = open_log(tmp_path / "a.csv").runs
+    assert (run.source, list(run.others)) == ("1", ["2"])
+    rows = [f"{0.1 * k:.1f},1,0,{0.1 * k:.1f},0,0,{('a', ' b', 'b ')[k % 3]}" for k in range(99)]
+    (tmp_path / "b.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y,yaw,source", *rows, ""]))
+    (run,) = open_log(tmp_path / "b.csv").runs
+    assert (len(run.poses), len(run.others["b"])) == (33, 66)
+
+
+def test_of_several_logs_one_source_is_the_first(tmp_path: Path) -> None:
+    for name, order in (("one", ("lidar", "rtk")), ("two", ("rtk", "lidar"))):
+        said = [order[k % 2] for k in range(40)]
+        rows = [f"{0.1 * k:.1f},1,0,{0.1 * k:.1f},{own == 'rtk':d},0,{own}" for k, own in enumerate(said)]
+        (tmp_path / f"{name}.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y,yaw,source", *rows, ""]))
+    runs = open_log(tmp_path / "one.csv", tmp_path / "two.csv").runs
+    assert [(run.source, list(run.others)) for run in runs] == [("lidar", ["rtk"])] * 2
+    assert all(not run.poses.y.any() and run.others["rtk"].y.all() for run in runs)
+
+
 def test_a_column_says_whose_a_pose_is(tmp_path: Path) -> None:
     log = open_log(table(tmp_path / "a.csv"))
     (run,) = log.runs

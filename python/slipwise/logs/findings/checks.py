@@ -71,6 +71,7 @@ THEN: tuple[Check, ...] = (
     MissingTurns(),
     Unrelated(),
 )
+_OF_PLACE = {check.kind for check in (TurnedPoses, BackwardPoses, SensorOffCentre)}
 #: What only a whole log shows.
 WHOLE: tuple[Check, ...] = (
     GyroTurnsOtherwise(),
@@ -196,7 +197,9 @@ def findings_of_each(
     for name in inputs:
         seen = seen_in(log, name, unknown_after, sensor_yaw, before)
         checks = [check for check in WHOLE if before is None or check.of_input]
-        found += (*findings_in(seen), *looked_at(WholeLog(log, name, unknown_after), checks))
+        first = findings_in(seen)
+        found += (*first, *findings_of_others(log, name, unknown_after, first))
+        found += looked_at(WholeLog(log, name, unknown_after), checks)
         before = seen
     return tuple(found)
 
@@ -216,6 +219,30 @@ def seen_in(
         sensor_yaw=sensor_yaw,
         commanded=Commanded.of(runs),
     )
+
+
+def findings_of_others(
+    log: Log, input_name: str, unknown_after: float, first: Iterable[Finding]
+) -> tuple[Finding, ...]:
+    """Return what is wrong with poses of further sources beside the inputs, which was not `first` found.
+
+    Where they sit and how they are turned on the robot is learned, and no fault.
+    """
+    kinds = {each.kind for each in first} | _OF_PLACE
+    found: list[Finding] = []
+    for source in dict.fromkeys(name for run in log.runs for name in run.others):
+        runs = tuple(
+            replace(run, poses=run.others[source], others={}) for run in log.runs if source in run.others
+        )
+        seen = seen_in(replace(log, runs=runs), input_name, unknown_after)
+        found += (_of_source(each, source) for each in findings_in(seen) if each.kind not in kinds)
+    return tuple(found)
+
+
+def _of_source(found: Finding, source: str) -> Finding:
+    """Say of which source it is."""
+    advice = (*found.advice, f"Or leave out {source}.")
+    return replace(found, sentence=f"of the source {source}: {found.sentence}", advice=advice)
 
 
 def findings_of_log(whole: WholeLog) -> tuple[Finding, ...]:

@@ -232,6 +232,27 @@ def test_a_long_sound_drive_has_no_contradiction() -> None:
     assert findings_of(LONG, "command") == ()
 
 
+@pytest.mark.parametrize(
+    ("poses", "kind"),
+    [
+        (circular(SOUND), "repeated-wheels"),
+        (with_poses(SOUND, lambda p: replace(p, yaw=-p.yaw)), "implausible"),
+        (turned(SOUND, 0.5 * np.pi), None),
+        (SOUND, None),
+    ],
+    ids=["repeats the wheels", "clockwise", "turned on the robot", "sound"],
+)
+def test_poses_of_a_further_source_are_held_against_the_inputs_too(poses: Log, kind: str | None) -> None:
+    (first,), (other,) = SOUND.runs, poses.runs
+    both = replace(SOUND, runs=(replace(first, source="lidar", others={"odom": other.poses}),))
+    found = findings_of(both, "wheel")
+    assert [each.kind for each in found] == ([] if kind is None else [kind])
+    for each in found:
+        assert each.spoils
+        assert each.sentence.startswith("of the source odom: ")
+        assert each.advice[-1] == "Or leave out odom."
+
+
 def test_poses_that_begin_to_repeat_the_wheels_are_found_in_the_last_two_minutes() -> None:
     (run,) = LONG.runs
     assert run.wheels is not None
