@@ -159,7 +159,7 @@ def _not_better(judgement: Judgement) -> str:
 def _untrue(judgement: Judgement) -> str:
     if judgement.consistency is None or not judgement.consistency.untrue:
         return ""
-    return f"{_REFUSED} it beats the kinematic baseline, but its uncertainty is not that of its errors."
+    return f"{_REFUSED} its uncertainty is not that of its errors."
 
 
 def _too_late(known: Identified, facts: LogFacts) -> str:
