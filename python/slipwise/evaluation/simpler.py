@@ -47,20 +47,20 @@ class Simpler:
 def simpler_method(evaluation: Evaluation, judged: str) -> Simpler | None:
     """Return the best of the simpler bases that are clearly better than `judged` at the longest horizon.
 
-    Where a model file is judged, which learned from another log, any basis that learns from this one may be.
-    Clearly better is a basis that is worse in neither position nor heading, better in one beyond chance, and
-    by a tenth on the whole: the best of many is a little better by chance alone.
+    A model file, which learned from another log, is judged by the average that learns from this one: of ten
+    bases one is better by chance. Without an average any basis that does may be. Clearly better is a basis
+    that is worse in neither position nor heading, better in one beyond chance, and by a tenth on the whole:
+    the best of many is a little better by chance alone.
     """
     longest = [p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)]
     own = next((p for p in longest if p.method == judged), None)
     if own is None:
         return None
     of_file = judged in evaluation.models and own.causal
-    others = [
-        replace(_beside(p, own), of_file=of_file)
-        for p in longest
-        if p.causal and (_terms(p.method) < _terms(judged) or (of_file and p.method == "auto"))
-    ]
+    causal = [p for p in longest if p.causal]
+    average = [p for p in causal if p.method == "auto"] if of_file else []
+    tried = average or [p for p in causal if _terms(p.method) < _terms(judged)]
+    others = [replace(_beside(p, own), of_file=of_file) for p in tried]
     better = [other for other in others if _clearly_better(other)]
     return min(better, key=lambda other: other.position_ratio[0] * other.heading_ratio[0], default=None)
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.live.samples import Command, Pose, Reading, Stamped, Wheels
-from slipwise.logs.findings.checks import OF_STREAM, looked_at
+from slipwise.logs.findings.checks import OF_STREAM, findings_of_others, looked_at
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import WholeLog
 from slipwise.logs.gyro import COLUMN
@@ -38,7 +38,7 @@ class RecentLog:
         self._input, self._unknown_after = input_name, unknown_after
         self._rows: dict[type | str, deque[_Row]] = {}  # by the kind; of further sources, by the name
         self._first = ""  # name of the first source
-        self._positions = False  # which has no headings
+        self._positions: set[type | str] = set()  # of the sources of poses, those without headings
         self._back: deque[tuple[float, str]] = deque(maxlen=MOST)  # stamps of what went back, with its name
         self._newest, self._looked_at = -math.inf, math.nan
         self._found: dict[str, Finding] = {}
@@ -59,7 +59,8 @@ class RecentLog:
             if further:
                 kind = sample.source
             else:
-                self._first, self._positions = sample.source, position
+                self._first = sample.source
+            (self._positions.add if position else self._positions.discard)(kind)
         elif isinstance(sample, Command) and sample.ended:  # nobody sent it
             return
         elif isinstance(sample, Command | Wheels):
@@ -93,18 +94,19 @@ class RecentLog:
             whole = WholeLog(self._log(), self._input, self._unknown_after)
             for each in looked_at(whole, OF_STREAM):
                 self._found.setdefault(each.kind, each)
+            for each in findings_of_others(whole.log, self._input, self._unknown_after, ()):
+                self._found.setdefault(f"{each.kind} of others", each)
         return tuple(self._found.values())
 
     def _log(self) -> Log:
         commands, wheels = (self._inputs(kind) for kind in (Command, Wheels))
-        others = {name: self._poses(name) for name in self._rows if isinstance(name, str)}
+        inputs = commands if wheels is None else wheels
+        others = {name: self._poses(name, inputs) for name in self._rows if isinstance(name, str)}
         gyro = np.array(self._rows.get(Reading, ())).reshape(-1, 2).T
         extra = dict(zip(("t", COLUMN), gyro, strict=True)) if gyro.size else {}
-        poses = self._poses(Pose)
-        if self._positions:
-            inputs = commands if wheels is None else wheels
-            poses = replace(poses, yaw=course_of_path(poses.t, poses.x, poses.y, inputs), course=True)
-        run = Run("live", commands, wheels, poses, extra, others=others, source=self._first)
+        run = Run(
+            "live", commands, wheels, self._poses(Pose, inputs), extra, others=others, source=self._first
+        )
         while self._back and self._back[0][0] < self._newest - KEPT:
             self._back.popleft()
         back = Counter(name for _, name in self._back)
@@ -113,12 +115,15 @@ class RecentLog:
         )
         return Log(runs=(run,), left_out=left_out)
 
-    def _poses(self, kind: type | str) -> Poses:
+    def _poses(self, kind: type | str, inputs: Inputs | None) -> Poses:
         rows = self._rows.get(kind)
         if not rows:
             return empty_poses()
         t, x, y, yaw, roll, pitch, z = np.ascontiguousarray(np.array(rows).T)
-        return Poses(t, x, y, yaw, np.zeros(len(t), np.int64), z=z, roll=roll, pitch=pitch)
+        poses = Poses(t, x, y, yaw, np.zeros(len(t), np.int64), z=z, roll=roll, pitch=pitch)
+        if kind not in self._positions:
+            return poses
+        return replace(poses, yaw=course_of_path(t, x, y, inputs), course=True)
 
     def _inputs(self, kind: type) -> Inputs | None:
         rows = self._rows.get(kind)

@@ -16,7 +16,6 @@ def of_common_input(models: Mapping[str, Model], asked: str | None = None) -> di
 
     Raises:
         SettingsError: there is no such input.
-        ModelError: one of them has learned nothing from the input that is asked for.
     """
     if not models:
         return {}
@@ -25,6 +24,4 @@ def of_common_input(models: Mapping[str, Model], asked: str | None = None) -> di
     for name in wanted:
         if all(name in model.inputs for model in models.values()):
             return {key: model.of_input(name) for key, model in models.items()}
-    if asked is not None:
-        return {key: model.of_input(asked) for key, model in models.items()}  # one of them refuses
     return dict(models)

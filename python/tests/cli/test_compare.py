@@ -43,6 +43,14 @@ def test_differences_stand_with_both_values_and_z(slipwise: Slipwise, models: tu
     assert "Both have learned from the same log" in result.out
 
 
+def test_an_input_that_the_models_do_not_answer_from_is_refused(
+    slipwise: Slipwise, models: tuple[Path, Path]
+) -> None:
+    result = slipwise("compare", *models, "--input", "command")
+    assert result.code == 2
+    assert "the model was learned from wheel speeds, and nothing from commands" in result.err
+
+
 def test_a_log_decides_which_predicts_better(
     slipwise: Slipwise, drive_csv: Path, models: tuple[Path, Path]
 ) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from contradictory_logs import SKID_STEERED, sound_log
+from contradictory_logs import SKID_STEERED, circular, sound_log
 from faulty_logs import FAULTS, with_fault
 
 from slipwise.live.recent_log import KEPT, RecentLog
@@ -50,6 +50,17 @@ def test_a_source_of_another_scale_is_found_beside_the_first() -> None:
             if isinstance(sample, Pose):
                 further = replace(sample, x=scale * sample.x, y=scale * sample.y, yaw=np.nan, source="map")
                 recent.take(further, further=True)
+            found |= {each.kind for each in recent.found()}
+        assert found == kinds
+
+
+def test_a_further_source_that_repeats_the_wheels_is_found() -> None:
+    (run,), (repeats,) = LOG.runs, circular(LOG).runs
+    for poses, kinds in ((run.poses, set()), (repeats.poses, {"repeated-wheels"})):
+        recent, found = RecentLog("wheel", 0.5), set[str]()
+        others = [Pose(*row, source="odom") for row in zip(*_columns(poses, "x", "y", "yaw"), strict=True)]
+        for sample in sorted([*samples_of(LOG), *others], key=lambda each: each.t):
+            recent.take(sample, further=isinstance(sample, Pose) and sample.source == "odom")
             found |= {each.kind for each in recent.found()}
         assert found == kinds
 
