@@ -85,7 +85,7 @@ def _transform(mount: Mounted) -> str:
 def _urdf(mount: Mounted) -> list[str]:
     x, y, yaw = _pose(mount)
     link = escape(frame_name(mount.name))
-    unknown = _unknown(mount).replace("--", "-")
+    unknown = re.sub("-{2,}", "-", _unknown(mount))  # which would end the comment
     return [
         *([f"<!-- {escape(unknown)} -->"] if unknown else []),
         f'<link name="{link}"/>',
