@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from slipwise.calibration.mount_windows import LATEST, YAW, Left, Windows, X, Y, left_of_all, windows_in
 from slipwise.logs.log import Run
 from slipwise.models.model import Model
-from slipwise.models.mounted import UNITS, Mounted, mount_row
+from slipwise.models.mounted import KNOWN, UNITS, Mounted, mount_row
 from slipwise.models.parameter_table import ParameterTable
 
 Floats = NDArray[np.float64]
@@ -32,7 +32,6 @@ _ROUGH = (12, 50)  # windows and poses in each, by which the search begins
 _OUTLIER = 4.0  # times the usual error of a window, from which on it is left out
 _MOST_ALIKE = 0.8  # correlation of neighbouring windows
 _LEAST_NOISE = (1e-4, 1e-4)  # m, rad
-_KNOWN = (0.1, 0.1, 0.1, 0.1)  # m, m, rad, s: standard deviations up to which a number is said
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +48,8 @@ class Mount:
     @property
     def known(self) -> list[int]:
         """Which of the numbers the drive tells."""
-        told = np.flatnonzero(self.std <= _KNOWN).tolist()
-        return [i for i in told if i != YAW or self.heading]
+        known = np.flatnonzero(self.std <= KNOWN).tolist()
+        return [i for i in known if i != YAW or self.heading]
 
     def mounted(self) -> Mounted:
         """Return what the drive tells of it."""

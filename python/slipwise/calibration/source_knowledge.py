@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.logs.fixes import FIXES
+from slipwise.models.mounted import KNOWN
 from slipwise.number_text import estimate_text
 
 Floats = NDArray[np.float64]
-
-_KNOWN = np.array((0.1, 0.1, 0.1, 0.1))  # s, m, m, rad: standard deviations up to which a number is said
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,9 +34,9 @@ class LearnedSource:
     def sentence(self, *, placed: bool = False) -> str:
         """Say it in words; its place and clock are `placed` where both sources together told them better."""
         said = [f"{self.segments} segments are those of {self.name or 'the first source'}"]
-        if 0.0 < self.late_std <= _KNOWN[0] and not placed:
+        if 0.0 < self.late_std <= KNOWN and not placed:
             said.append(f"stamped {self.late:+.3f} s late (± {self.late_std:.3f} s)")
-        if self.sensor_std.any() and np.all(self.sensor_std <= _KNOWN[1:]) and not placed:
+        if self.sensor_std.any() and np.all(self.sensor_std <= KNOWN) and not placed:
             x, y, yaw = map(estimate_text, self.sensor.tolist(), self.sensor_std.tolist())
             said.append(f"sitting at x {x} m, y {y} m, yaw {yaw} rad")
         sizes = [

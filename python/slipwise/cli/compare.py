@@ -59,9 +59,10 @@ def compare(
     out = Output(json)
     refuse_unwritable(out.written_file, inputs=(first, second, *(logs or []), *log_options.files))
     named = named_models([first, second])
-    models = of_common_input(named, input_name)
-    if input_name is not None:
-        models = {name: model.of_input(input_name) for name, model in models.items()}  # what lacks it refuses
+    if input_name is None:
+        models = of_common_input(named)
+    else:
+        models = {name: model.of_input(input_name) for name, model in named.items()}
     slips = {name: without_force(model) for name, model in models.items()}  # a force is of its day
     rows = differences(*slips.values())
     comparison = _compared(models, logs, log_options) if logs else None

@@ -198,13 +198,14 @@ def _make(model: Model, name: str, to: TargetName, options: ExportOptions) -> _M
     """Make all texts before any is written; `all` leaves out what does not fit the model."""
     from slipwise.errors import ModelError
     from slipwise.export import TARGETS, export_model, find_target
+    from slipwise.models.mounted import mounts_in
 
     if to is not TargetName.all:
         target = find_target(to.value)
         return _Made([(target, export_model(model, target.name, name=name, options=options, force=True))], [])
     made = _Made([], [])
-    mounts = options.no_side_slip or any(row.stage == "mount" for row in model.content.parameters)
-    for target in (*TARGETS, *((find_target("mounts"),) if mounts else ())):
+    mounted = options.no_side_slip or mounts_in(model)
+    for target in (*TARGETS, *((find_target("mounts"),) if mounted else ())):
         try:
             exported = export_model(model, target.name, name=name, options=options, force=True)
         except ModelError as problem:

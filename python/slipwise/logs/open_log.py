@@ -184,7 +184,7 @@ def _named(log: Log, file: Path, path: Path) -> Log:
     return replace(log, runs=tuple(replace(run, files=files) for run in log.runs))
 
 
-def beside(first: str, run: Run) -> Run:
+def _with_first(first: str, run: Run) -> Run:
     """Return a run whose first source of poses is that of all logs, where it has that one."""
     if run.source == first or first not in run.others:
         return run
@@ -200,7 +200,7 @@ def joined(logs: list[Log]) -> Log:
     names = Counter(name for log in logs for name in {run.name for run in log.runs})
     return Log(
         runs=tuple(
-            beside(first, replace(run, name=f"{label}/{run.name}") if names[run.name] > 1 else run)
+            _with_first(first, replace(run, name=f"{label}/{run.name}") if names[run.name] > 1 else run)
             for label, log in zip(_labels(logs), logs, strict=True)
             for run in log.runs
         ),

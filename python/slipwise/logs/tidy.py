@@ -166,10 +166,7 @@ def pose_columns(table: Columns, options: LogOptions, tally: Tally, notes: list[
 
 def _sources(table: Table, notes: list[str]) -> tuple[Ints, tuple[str, ...]] | None:
     """Return whose pose is in each row; the first source is the one that comes first in the table."""
-    raw, written = table.codes("source")
-    cleaned = [_source_name(name) for name in written]
-    names = list(dict.fromkeys(cleaned))
-    codes = np.array([names.index(name) for name in cleaned], np.int64)[raw]
+    codes, names = _source_codes(table)
     named = np.array([bool(name) for name in names])[codes]
     if not named.any():
         return None
@@ -180,6 +177,14 @@ def _sources(table: Table, notes: list[str]) -> tuple[Ints, tuple[str, ...]] | N
     if len(found) > 1:
         notes.append(f"{table.path.name}: poses are those of {found[0]}, beside them {', '.join(found[1:])}")
     return number, found
+
+
+def _source_codes(table: Table) -> tuple[Ints, list[str]]:
+    """Return the column of sources as codes [N] and the names, each once."""
+    codes, written = table.codes("source")
+    cleaned = [_source_name(name) for name in written]
+    names = list(dict.fromkeys(cleaned))
+    return np.array([names.index(name) for name in cleaned], np.int64)[codes], names
 
 
 def _source_name(written: str) -> str:
@@ -212,7 +217,7 @@ def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]
         tally.add("unsaid", UNSAID, count=int(unsaid.sum()), where=table.place(int(np.argmax(unsaid))))
         return np.asarray(said == 1.0)
     where = np.flatnonzero(there)
-    sources = table.codes("source")[0] if "source" in table.names else np.zeros(len(table), np.int64)
+    sources = _source_codes(table)[0] if "source" in table.names else np.zeros(len(table), np.int64)
     where = where[np.argsort(sources[where], kind="stable")]  # each source holds its own
     same = np.diff(sources[where]) == 0
     for name in (name for name in (*HELD_BY, "frame") if name in pose):

@@ -19,6 +19,8 @@ Number = Literal["x", "y", "yaw", "late"]
 
 #: Numbers of a mount in the order of their rows, with units.
 UNITS: dict[Number, str] = {"x": "m", "y": "m", "yaw": "rad", "late": "s"}
+#: In these units, the standard deviation up to which a number is said.
+KNOWN = 0.1
 
 
 @dataclass(frozen=True)
