@@ -12,6 +12,7 @@ from sample_logs import Drive, simulated_log
 
 from slipwise import _core
 from slipwise.logs import Inputs, Log, Poses, Run
+from slipwise.logs.held import UNKNOWN_AFTER, HeldSum
 
 #: A robot that turns 60 % of what its wheels say and answers commands late: real, and no contradiction.
 SKID_STEERED = Drive(
@@ -105,3 +106,32 @@ def since(log: Log, change: Callable[[Log], Log], t: float) -> Log:
         return replace(run, poses=joined(run.poses, other.poses, ("x", "y", "yaw")), **inputs)
 
     return with_runs(log, change_run)
+
+
+def filtered(run: Run, after: float, *, heading: bool = True, every: float = 0.0) -> Run:
+    """Give a run the poses of a filter that adds the wheels' motion to its pose, and then takes in the run's.
+
+    Args:
+        run: what is changed where it has wheels.
+        after: time constant of the filter's corrections [s].
+        heading: it corrects the heading so too; otherwise a gyro gives it.
+        every: [s] it is corrected whole in one step, instead of slowly.
+    """
+    if run.wheels is None or len(run.wheels) < 2 or len(run.poses) < 2:
+        return run
+    w, p = run.wheels, run.poses
+    ahead, aside, turns = (
+        HeldSum.of(w, each, UNKNOWN_AFTER).between(p.t[:-1], p.t[1:]) for each in (w.v, w.vy, w.omega)
+    )
+    measured = np.column_stack((p.x, p.y, np.unwrap(p.yaw)))
+    rows, corrected = [measured[0]], float(p.t[0])
+    for k, dt in enumerate(np.diff(p.t).tolist()):
+        way = complex(ahead[k], aside[k]) * np.exp(1j * (rows[-1][2] + 0.5 * turns[k]))
+        now = rows[-1] + np.array([way.real, way.imag, turns[k]])
+        whole = every > 0.0 and p.t[k + 1] - corrected > every
+        corrected = float(p.t[k + 1]) if whole else corrected
+        now += (float(whole) if every else 1.0 - np.exp(-dt / after)) * (measured[k + 1] - now)
+        now[2] = now[2] if heading else measured[k + 1, 2]
+        rows.append(measured[k + 1] if p.frame[k + 1] != p.frame[k] else now)
+    x, y, yaw = np.array(rows).T
+    return replace(run, poses=replace(p, x=x, y=y, yaw=yaw))

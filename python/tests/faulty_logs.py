@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from contradictory_logs import dead_reckoned, teleported
+from contradictory_logs import dead_reckoned, filtered, teleported
 
 from slipwise.logs import Inputs, Log, Poses, Run
 from slipwise.logs.findings.diagnose import diagnose_log
@@ -345,6 +345,7 @@ FAULTS: dict[str, Fault] = {
     "course for a heading": Fault(by_course, ("course-heading",), unseen=FORWARD),
     "sensor 1 m ahead": of_poses(off_centre, "sensor-off-centre"),
     "poses of the wheels": Fault(integrated, ("repeated-wheels",), ("wheels",)),
+    "poses of a filter": Fault(lambda run: filtered(run, 4.0), ("filtered-poses",), ("wheels",), ("DS3",)),
     "unrelated inputs": Fault(unrelated, NOT_THESE, unseen=("DS3",)),
     "odometry echoes the command": Fault(echoing, ("echoed-commands",), ("commands", "wheels")),
     "dead band": Fault(banded, ("dead-band",), ("commands", "wheels"), unseen=("DS3",)),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stretch of a process observed from its start: measurements on the way and its end, with common noise
-// (derivations/filter.md).
+// (derivations/actuator.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -109,7 +109,7 @@ class MotionLearner {
   /// each of them may be the one under the robot. What was learned of the robot stays.
   void start_drive(const DriveStart& start = {});
   /// The surface changes now by a label: to the one of this name, or to another where it is empty. Where no
-  /// surfaces are remembered, a name says nothing, and none gives slip `change.forget` of its prior variance back.
+  /// surfaces are remembered, a name says nothing, and without one slip may jump.
   void cue_surface(const std::string& label);
   /// A sensor says what the terrain under the robot is now: a prior for the surfaces that it said that on before, as
   /// far as surfaces are remembered. Each answer, in the order of time, as soon as it is known.

@@ -16,6 +16,7 @@ from slipwise.logs.findings.course_heading import CourseHeading
 from slipwise.logs.findings.drifting_poses import DriftingPoses
 from slipwise.logs.findings.encoders import ReversalJumps, WheelSpikes
 from slipwise.logs.findings.filled_poses import FilledPoses
+from slipwise.logs.findings.filtered_poses import FilteredPoses
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.gyro_scale import GyroScale, GyroTurnsOtherwise
 from slipwise.logs.findings.headings import (
@@ -71,6 +72,8 @@ THEN: tuple[Check, ...] = (
     MissingTurns(),
     Unrelated(),
 )
+#: What is looked for in poses of further sources too.
+OF_SOURCE: tuple[Check, ...] = (FilteredPoses(),)
 _OF_PLACE = {check.kind for check in (TurnedPoses, BackwardPoses, SensorOffCentre)}
 #: What only a whole log shows.
 WHOLE: tuple[Check, ...] = (
@@ -88,6 +91,7 @@ WHOLE: tuple[Check, ...] = (
     FrozenPoses(),
     TowedPoses(),
     FilledPoses(),
+    FilteredPoses(),
     DriftingPoses(),
     AskewAttitude(),
     ClockOffset(),
@@ -108,6 +112,7 @@ OF_STREAM: tuple[Check, ...] = (
     FrozenPoses(),
     TowedPoses(),
     FilledPoses(),
+    FilteredPoses(),
     DriftingPoses(),
     AskewAttitude(),
     ClockOffset(),
@@ -234,8 +239,10 @@ def findings_of_others(
         runs = tuple(
             replace(run, poses=run.others[source], others={}) for run in log.runs if source in run.others
         )
-        seen = seen_in(replace(log, runs=runs), input_name, unknown_after)
-        found += (_of_source(each, source) for each in findings_in(seen) if each.kind not in kinds)
+        theirs = replace(log, runs=runs)
+        wrong = findings_in(seen_in(theirs, input_name, unknown_after))
+        wrong += looked_at(WholeLog(theirs, input_name, unknown_after), OF_SOURCE)
+        found += (_of_source(each, source) for each in wrong if each.kind not in kinds)
     return tuple(found)
 
 

@@ -46,7 +46,7 @@ class NotSteered(Check):
     kind, family = "not-steered", "drive"
     means = "a wheelbase is given, and the robot does not steer: it has no delay and lag of a steering"
     shows = "commands drive it sideways; or it turns on the spot as it is commanded, by 0.2 rad in 5 windows"
-    cure = "leave `--wheelbase` (`live.wheelbase`) away"
+    cure = "leave `--wheelbase` away"
 
     def look(self, seen: Seen) -> Finding | None:
         """Look for sideways commands, and for turns at standstill."""

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+from slipwise.logs.findings.driven_steps import left_by_body, turns, ways_to_turn
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.pose_streams import inputs_of, told_by
 from slipwise.logs.findings.seen import WholeLog
-from slipwise.logs.findings.towing import Towing, left_by_body, left_by_trailer, turns
+from slipwise.logs.findings.towing import left_by_trailer, towing
 from slipwise.logs.log import has_course
 
 _ENOUGH = 30  # windows of 1 s in which a trailer would follow,
@@ -31,12 +32,12 @@ class TowedPoses(Check):
         if has_course(whole.log.runs):
             return None
         pairs = [(inputs_of(run, name), run.poses.as_measured) for run in whole.log.runs]
-        cut = [Towing.of(i, p, whole.unknown_after) for i, p in pairs if i is not None and len(p) > 1]
-        drives = [each for each in cut if each is not None and each.good.any()]
-        measured = sum(int(each.good.sum()) for each in drives)
+        cut = [towing(i, p, whole.unknown_after) for i, p in pairs if i is not None and len(p) > 1]
+        drives = [each for each in cut if each is not None]
+        measured = sum(int(each.chosen.sum()) for each in drives)
         if measured < _ENOUGH or float((turns(drives) ** 2).sum()) < _TURNED:
             return None
-        body = left_by_body(drives)
+        body = left_by_body(drives, turns(drives), ways_to_turn)
         if body < _UNEXPLAINED:
             return None
         trailer, length = left_by_trailer(drives, commanded=name == "command")

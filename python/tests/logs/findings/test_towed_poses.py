@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +11,7 @@ from contradictory_logs import SKID_STEERED, sound_log, with_poses
 from sample_logs import Drive, simulated_log
 
 from slipwise.calibration import calibrate
-from slipwise.logs import Inputs, Log, Poses, Run, open_log
+from slipwise.logs import Inputs, Log, Poses, Run
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import WholeLog
 from slipwise.logs.findings.towed_poses import TowedPoses
@@ -113,9 +112,3 @@ def test_headings_that_were_smoothed_in_time_are_no_trailers() -> None:
 def test_positions_are_no_trailers() -> None:
     """Their headings are the direction of the path, which nobody measured."""
     assert found_in(with_poses(driven(2.0), lambda p: replace(p, course=True))) is None
-
-
-@pytest.mark.slow
-def test_no_real_robot_is_a_trailer(real_log_dir: Path) -> None:
-    for path in sorted(real_log_dir.glob("*/*.csv.gz")):
-        assert found_in(open_log(path)) is None, path.name
