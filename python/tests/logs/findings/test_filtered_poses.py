@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from contradictory_logs import SKID_STEERED, filtered, sound_log, with_runs
+from contradictory_logs import SKID_STEERED, filtered, sound_log, with_poses, with_runs
 
 from slipwise.calibration import calibrate
 from slipwise.logs import Log, Run
@@ -48,6 +48,13 @@ def test_a_gyro_hides_no_filter_of_the_way() -> None:
     assert found is not None
     assert "they go" in found.sentence
     assert float(found.sentence.split("long run ")[1].split(" %")[0]) == pytest.approx(100.0 * GOES, abs=3.0)
+
+
+def test_positions_of_a_filter_are_found_too() -> None:
+    found = found_in(with_poses(filtered_log(5.0, heading=False), lambda p: replace(p, course=True)))
+    assert found is not None
+    assert "they go" in found.sentence
+    assert found_in(with_poses(sound_log(DRIVE), lambda p: replace(p, course=True))) is None
 
 
 def test_no_model_of_such_poses_is_good() -> None:
