@@ -43,7 +43,7 @@ def turned_poses(log: Log, options: LogOptions) -> Log:
     offset = options.pose_yaw_offset
     if offset == 0.0:
         return log
-    runs = tuple(replace(run, poses=_turned(run.poses, offset)) for run in log.runs)
+    runs = tuple(run.with_each_source(lambda poses: _turned(poses, offset)) for run in log.runs)
     return replace(
         log, runs=runs, notes=(*log.notes, f"poses: {offset:.6g} rad added to every heading, as given")
     )

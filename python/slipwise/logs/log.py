@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -177,7 +177,7 @@ class Run:
     poses: Poses
     extra: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # rows of a tidy log, with their "t"
     others: Mapping[str, Poses] = field(default_factory=dict)  # of further sources, by name
-    source: str = ""  # name of the first source, where there are several
+    source: str = ""  # name of the first source, where sources have names
     files: tuple[str, ...] = ()  # that it comes from: paths of sources of the log
     forces: Forces | None = None  # that are known to push the robot
 
@@ -198,6 +198,11 @@ class Run:
         if not times:
             return 0.0, 0.0
         return float(min(t[0] for t in times)), float(max(t[-1] for t in times))
+
+    def with_each_source(self, change: Callable[[Poses], Poses]) -> Run:
+        """Return the run with the poses of all sources as `change` returns them."""
+        others = {name: change(poses) for name, poses in self.others.items()}
+        return replace(self, poses=change(self.poses), others=others)
 
     def place(self, t: float) -> str:
         """Say where a time [s] is: counted from the run's start, and as it stands in the file."""
