@@ -132,6 +132,7 @@ def live(
                 watchers=watchers,
                 run=robot.run,
                 command_timeout=timeout,
+                read=log_options,
             )
             if robot.log is not None:
                 built.learning.learner.know_log(robot.log)
