@@ -80,7 +80,7 @@ class Inputs(_Series):
     omega: Floats  # [N] rad/s, counter-clockwise
     car: CarCommands | None = None  # throttle and steering, where v and omega are about what they do
     wheelbase: float | None = None  # m, of commands to a robot that steers
-    ended: Bools | None = None  # [N] zeros of a watchdog that ended the command before, as was given
+    ended: Bools | None = None  # [N] what a watchdog holds of the command before, or zeros once it ended
 
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "v", "vy", "omega"))
@@ -90,12 +90,12 @@ class Inputs(_Series):
 
     @property
     def ends(self) -> Bools:
-        """Which samples are zeros of a watchdog, [N]."""
+        """Which samples are a watchdog's, [N]."""
         return np.zeros(len(self), bool) if self.ended is None else self.ended
 
     @property
     def sent(self) -> Inputs:
-        """The same without zeros of a watchdog, which nobody sent."""
+        """The same without what a watchdog holds or ends, which nobody sent."""
         return self if self.ended is None else self.select(~self.ended)
 
     def twists(self) -> Floats:

@@ -153,7 +153,7 @@ def _completed(log: Log, options: LogOptions) -> Log:
         log = with_shifted_poses(log, options)
     log = cut_to_span(turned_poses(log, options), options.start, options.end)
     log = replace(log, sideways=options.sideways) if options.sideways else log
-    log = with_ended_commands(log, options.command_timeout)
+    log = with_ended_commands(log, options.command_timeout, options.unknown_after)
     if options.car is None:
         return log if options.wheelbase is None else _steered(log, options.wheelbase)
     from slipwise.logs.car_commands import with_car_commands

@@ -45,7 +45,7 @@ class InputColumns:
     v: Floats
     vy: Floats | None
     omega: Floats
-    ended: Floats | None = None  # 1 where zeros say that the command before ended
+    ended: Floats | None = None  # 1 where nobody sent it: the command before is held, or ended
 
     def columns(self) -> dict[str, Floats]:
         """Return the columns by name, without a sideways speed where there is none."""
