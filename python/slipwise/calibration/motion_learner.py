@@ -287,7 +287,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             input_name=self._input,
             positions=self._positions,
             gyro=self._positions or self._gyro_alone,
-            sensor_yaw=self._settings.sensor_extrinsics.yaw,
+            sensor=self._settings.sensor_extrinsics.pose,
             commanded=Commanded(
                 steered=bool(self._wheelbase) and not throttle,
                 sideways=self._sideways["command"].span is not None,
