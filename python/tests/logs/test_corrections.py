@@ -91,6 +91,13 @@ def test_roll_and_pitch_are_turned_with_the_sensor() -> None:
     np.testing.assert_allclose(sideways.roll, 0.1, atol=1e-12)  # what was ahead is on the right
 
 
+def test_positions_have_no_heading_to_turn(tmp_path: Path) -> None:
+    rows = [f"{0.1 * k:.1f},1,0,{0.1 * k:.1f},0" for k in range(50)]
+    (tmp_path / "a.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y", *rows, ""]))
+    with pytest.raises(SettingsError, match=r"only positions.*--pose-yaw-offset"):
+        open_log(tmp_path / "a.csv", pose_yaw_offset=1.0)
+
+
 @pytest.mark.parametrize(
     "options", [{"command_scale": (0.0, 1.0)}, {"wheel_scale": (1.0,)}, {"pose_yaw_offset": float("nan")}]
 )
