@@ -120,7 +120,8 @@ class LogFields:
     command_scale: tuple[float, float] = _key(
         Kind.factors,
         "V,OMEGA",
-        "Factors of the commanded speed and yaw rate: 0.15,1 for rad/s of 0.15 m wheels; -1,1 for a sign.",
+        "Factors of the commanded speed and yaw rate (or steering, curvature): 0.15,1 for rad/s of 0.15 m "
+        "wheels; -1,1 for a sign.",
         default=(1.0, 1.0),
     )
     wheel_scale: tuple[float, float] = _key(

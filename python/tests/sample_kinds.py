@@ -115,6 +115,15 @@ def kinds() -> dict[str, Kind]:
             wheels | pose | {"std_xy": 0.01 + 0.005 * np.sin(t), "frame": words(("map", "odom"), 150)}
         ),
         "two sources": Kind(wheels | pose | {"source": words(("lidar", "mocap"), 1)}),
+        "two sources, turned and late": Kind(
+            wheels | pose | {"source": words(("lidar", "mocap"), 1)},
+            {"pose_yaw_offset": 0.3, "pose_clock_offset": -0.04},
+        ),
+        "steering beside a scaled speed": Kind(
+            {"t": t, "cmd_v": 3.6 * c.v, "cmd_steer": np.arctan(0.4 * turn)} | pose,
+            {"wheelbase": 0.4, "command_scale": [1.0 / 3.6, 1.0]},
+            "command",
+        ),
         "fixes": Kind(wheels | place | {"fix": words(("rtk_fixed", "rtk_float"), 60)}),
         "runs": Kind(wheels | pose | {"run": words(("one", "two"), n // 2)}),
         "labels": Kind(wheels | pose | {"terrain": words(("grass", "sand"), 200)}),

@@ -161,7 +161,7 @@ def found_contradictions(
         input_name=input_name,
         positions=has_course(log.runs),
         gyro=has_course(log.runs) or gyro_alone(log.runs),
-        sensor_yaw=settings.sensor_extrinsics.yaw,
+        sensor=settings.sensor_extrinsics.pose,
         commanded=Commanded.of(log.runs),
     )
     unknown_after = settings.segment.unknown_after

@@ -22,7 +22,9 @@ from slipwise.calibration.learner_answers import Event, MotionState, Odometry, e
 from slipwise.calibration.measurements import Measurements
 from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.path_ahead import PathAhead
+from slipwise.calibration.prepared_run import used_sources
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
+from slipwise.calibration.same_log import learned_again
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
 from slipwise.calibration.settings_for_log import for_ground, for_positions
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
@@ -35,7 +37,7 @@ from slipwise.logs.findings.seen import Seen, WholeLog
 from slipwise.logs.findings.steering import Commanded
 from slipwise.logs.log import Log
 from slipwise.models import Model, parse_model
-from slipwise.models.schema import ModelFile, Range
+from slipwise.models.schema import LogReference, ModelFile, Range
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -113,6 +115,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         self._of_log: tuple[Finding, ...] = ()  # what only a whole log shows
         self._of_others: tuple[Finding, ...] = ()  # of further sources of poses in it
         self._log_known = False
+        self._logs: dict[str, str] = {}  # that were pushed, where they are known: paths by their SHA-256
         self.found: tuple[Finding, ...] = ()  # what was wrong at the last judgement of a stream
         self._clocks_compared = False
 
@@ -229,7 +232,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         origin = ModelFacts(
             input_name=self._input,
             settings=self._settings,
-            logs=[],
+            logs=[LogReference(path=path, sha256=sha256) for sha256, path in self._logs.items()],
             range=Range(
                 speed=[slowest, fastest],
                 yaw_rate=[right, left],
@@ -247,8 +250,11 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
     def know_log(self, log: Log) -> None:
         """Take what a whole log shows beside the measurements that are pushed from it."""
         unknown_after = self._settings.segment.unknown_after
-        self._of_log, self._log_known = findings_of_log(WholeLog(log, self._input, unknown_after)), True
+        shown = findings_of_log(WholeLog(log, self._input, unknown_after))
+        again = learned_again(log, self._logs, "the learner")
+        self._of_log, self._log_known = (*shown, *again), True
         self._of_others = findings_of_others(log, self._input, unknown_after, ())
+        self._logs |= {source.sha256: source.path for source in used_sources(log, self._input)}
         self.know_clocks(compared=log.clocks_compared)
 
     def know_stream(self, found: tuple[Finding, ...]) -> None:
@@ -281,7 +287,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             input_name=self._input,
             positions=self._positions,
             gyro=self._positions or self._gyro_alone,
-            sensor_yaw=self._settings.sensor_extrinsics.yaw,
+            sensor=self._settings.sensor_extrinsics.pose,
             commanded=Commanded(
                 steered=bool(self._wheelbase) and not throttle,
                 sideways=self._sideways["command"].span is not None,
@@ -309,6 +315,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             "input": self._input,
             "settings": self._settings.model_dump(mode="json"),
             "runs": self._runs,
+            "logs": self._logs,
             "wheels": self._wheels,
             "wheel_step": [self._wheel_step.total, self._wheel_step.count, self._wheel_step.last],
             "sideways": {name: [s.most, s.right, s.left] for name, s in self._sideways.items()},
@@ -356,6 +363,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             learner._wheel_step = WheelStep(*facts.get("wheel_step", ()))
             for name, seen in facts.get("sideways", {}).items():
                 learner._sideways[name] = SidewaysSeen(*seen)
+            learner._logs = {str(sha256): str(path) for sha256, path in facts.get("logs", {}).items()}
             learner._runs, learner._wheels = [str(run) for run in facts["runs"]], bool(facts["wheels"])
         except (ValueError, TypeError, LookupError, AttributeError, ArithmeticError, RuntimeError) as problem:
             raise SettingsError(f"the saved learner cannot be loaded: {problem}") from problem

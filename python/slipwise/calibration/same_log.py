@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from slipwise.errors import LogError
@@ -48,16 +49,20 @@ def _measured(run: Run) -> bytes:
 
 def learned_from(log: Log, model: Model) -> tuple[str, ...]:
     """Return the files of a log that a model has learned from; predictions of these are not causal."""
-    hashes = _learned(model)
-    return tuple(dict.fromkeys(source.path for source in log.sources if source.sha256 in hashes))
+    return _files(log, _learned(model))
 
 
 def learned_before(log: Log, start: Model | None) -> tuple[Finding, ...]:
     """Return what is to be said where learning goes on, on a log that the model to begin with has learned."""
-    known = () if start is None else learned_from(log, start)
-    if not known:
+    return () if start is None else learned_again(log, _learned(start), "the model to begin with")
+
+
+def learned_again(log: Log, known: Collection[str], who: str) -> tuple[Finding, ...]:
+    """Return what is to be said where `who` has learned files of a log already, by their SHA-256."""
+    again = _files(log, known)
+    if not again:
         return ()
-    sentence = f"the model to begin with has learned {', '.join(known)} already: {_TWICE}"
+    sentence = f"{who} has learned {', '.join(again)} already: {_TWICE}"
     advice = "Go on with logs that it has not learned, or with other parts of them (--start, --end)."
     return (Finding("learned-before", sentence, (advice,), spoils=False, reserves=True),)
 
@@ -66,6 +71,10 @@ def logs_of_both(first: Model, second: Model) -> tuple[str, ...]:
     """Return the logs of the first model, by their paths, that the second has learned too."""
     hashes = _learned(second)
     return tuple(each.path for each in first.content.provenance.logs if each.sha256 in hashes)
+
+
+def _files(log: Log, hashes: Collection[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(source.path for source in log.sources if source.sha256 in hashes))
 
 
 def _learned(model: Model) -> set[str]:

@@ -7,7 +7,7 @@ import tomllib
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, Field, ValidationError
 
@@ -38,6 +38,9 @@ from slipwise.files import read_whole
 from slipwise.logs.options import LogOptions
 from slipwise.models.upgrade import RENAMED_SETTINGS, with_new_keys
 from slipwise.segments import WindowRules
+
+if TYPE_CHECKING:
+    from slipwise.models.model import Model
 from slipwise.validation_text import first_problem
 
 MAX_BYTES = 1024 * 1024  # of a settings file
@@ -208,6 +211,12 @@ def make_settings(content: dict[str, Any], *, where: str = "settings", saved: bo
     if not saved:
         _note(where, news)
     return _validated(present, where)
+
+
+def sensor_of(model: Model) -> tuple[float, float, float]:
+    """Return where the settings of a model say that its pose sensor sits: x, y [m], yaw [rad]."""
+    given = {"sensor_extrinsics": model.content.provenance.settings.get("sensor_extrinsics", {})}
+    return make_settings(given, where="settings in the model file", saved=True).sensor_extrinsics.pose
 
 
 def user_settings(content: dict[str, Any], *, where: str) -> Settings:

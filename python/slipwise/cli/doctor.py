@@ -42,8 +42,7 @@ def doctor(
     out = Output(json)
     chosen = chosen_settings(settings, changes)
     refuse_unwritable(out.written_file, inputs=(*logs, *log_options.files, settings))
-    yaw = chosen.sensor_extrinsics.yaw
-    found = [diagnose(path, log_options, sensor_yaw=yaw) for path in logs]
+    found = [diagnose(path, log_options, sensor=chosen.sensor_extrinsics.pose) for path in logs]
     code = int(any(each.found for each in found))
     out.document(_document(found, code))
     for diagnosis in found:

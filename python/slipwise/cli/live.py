@@ -115,7 +115,7 @@ def live(
         inputs=(replay, settings, start, *log_options.files),
     )
     instead = "--demo" if demo else "--replay" if replay is not None else None
-    _refuse_unheeded(table.transport, transport, results, instead=instead)
+    _refuse_unheeded(table.transport, transport, results, instead=instead, rate=rate)
     shown = Shown(quiet or (results is not None and str(results) == "-"), web)
     stopping = Stopping()
     try:
@@ -132,6 +132,7 @@ def live(
                 watchers=watchers,
                 run=robot.run,
                 command_timeout=timeout,
+                read=log_options,
             )
             if robot.log is not None:
                 built.learning.learner.know_log(robot.log)
@@ -151,7 +152,7 @@ def live(
 
 
 def _refuse_unheeded(
-    settled: str | None, given: str | None, results: Path | None, *, instead: str | None
+    settled: str | None, given: str | None, results: Path | None, *, instead: str | None, rate: float
 ) -> None:
     """Refuse options that would change nothing.
 
@@ -164,6 +165,8 @@ def _refuse_unheeded(
         raise SettingsError(
             f"{instead} stands in for a robot", where="--transport", advice="leave one of the two out"
         )
+    if rate != 1.0 and not instead:
+        raise SettingsError("samples come as they are sent", where="--rate", advice="give --replay with it")
     if results is not None and (instead or settled != "stdin"):
         raise SettingsError(
             "results answer lines", where="--results", advice="give --transport stdin with it"

@@ -240,11 +240,12 @@ def _terminal(show: Show, headlines: list[str]) -> Watcher:
 
 
 def model_of_replay(built: Built, log: Log | None) -> Model:
-    """Return the model of all that was learned; of a log that was replayed, what `calibrate` makes of it.
+    """Return the model of all that was learned; of a replayed log alone, what `calibrate` makes of it.
 
     Raises:
         LogError: nothing was learned.
     """
     if not built.learning.learner.learned:
         raise LogError("nothing was learned: no model is written", advice="drive for some seconds first")
-    return built.learning.learner.judged_model(log=log)[0]
+    whole = None if built.goes_on else log
+    return built.learning.learner.judged_model(log=whole)[0]

@@ -95,7 +95,7 @@ def evaluate(
         left_out=(*log.left_out, *unused_runs(log, input_name), *contest.targets[-1].left_out),
         notes=log.notes + notes,
         contradictions=findings_of(
-            log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
+            log, input_name, settings.segment.unknown_after, sensor=settings.sensor_extrinsics.pose
         ),
         models=tuple(models),
         positions=has_course(log.runs),

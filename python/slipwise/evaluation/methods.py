@@ -13,7 +13,7 @@ from slipwise.calibration.plain import baseline_predictor, model_predictor, vend
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.predictors import Predictor, predict_all
 from slipwise.calibration.prepared_run import WindowSet, collect_windows
-from slipwise.calibration.settings import AVERAGE, Settings
+from slipwise.calibration.settings import AVERAGE, Settings, sensor_of
 from slipwise.calibration.settings_for_log import SIDEWAYS_BASES, SLOPE_BASES
 from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.models.model import Model
@@ -135,19 +135,22 @@ def learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
 def _driven_by(model: Model, contest: Contest) -> tuple[WindowSet, ...]:
     """Return the targets; throttle and steering go through the model's curves, not those learned meanwhile.
 
+    Where the settings say nothing else, poses are of a sensor where the model was told that it sits.
+
     Raises:
         SettingsError: the log has no throttle and steering.
     """
-    if model.car is None:
+    rules, drive = contest.settings.rules(), contest.windows.drive
+    if not any(rules.sensor):
+        rules = replace(rules, sensor=sensor_of(model))
+    if model.car is None and rules == contest.settings.rules():
         return contest.targets
-    drive = contest.windows.drive
-    if car_prior([run.run for run in drive]) is None:
+    if model.car is not None and car_prior([run.run for run in drive]) is None:
         raise SettingsError(
             "the model takes throttle and steering, and the log has none",
             where="--model",
             advice="give --vehicle dart or another with throttle_steering, and columns throttle and steering",
         )
-    rules = contest.settings.rules()
     return tuple(collect_windows(drive, targets.length, rules, model.car) for targets in contest.targets)
 
 

@@ -60,7 +60,7 @@ def score_predictions(
         left_out=log.left_out + contest.targets[-1].left_out,
         notes=log.notes + notes,
         contradictions=findings_of(
-            log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
+            log, input_name, settings.segment.unknown_after, sensor=settings.sensor_extrinsics.pose
         ),
     )
 

@@ -69,7 +69,7 @@ def learnability_of(
         kept: gets what was learned, by input, with the predictions and limits that a model needs.
     """
     found = findings_of(
-        log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
+        log, input_name, settings.segment.unknown_after, sensor=settings.sensor_extrinsics.pose
     )
     return replace(_learned(log, input_name, settings, kept), contradictions=found)
 

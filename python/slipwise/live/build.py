@@ -30,7 +30,10 @@ from slipwise.live.status import Identity
 from slipwise.live.surface_watch import today
 from slipwise.live.transport import Transport
 from slipwise.live.watch.watcher import Watcher
+from slipwise.logs.options import LogOptions
 from slipwise.models import Model
+
+_AS_IT_IS = LogOptions()
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,7 @@ class Built:
     node: LiveNode
     learning: Learning
     said: Said
+    goes_on: bool = False  # from what was learned before
 
 
 def build_node(  # noqa: PLR0913 (all that a node is made of)
@@ -50,6 +54,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     watchers: Sequence[Watcher] = (),
     run: str | None = None,
     command_timeout: float | None = None,
+    read: LogOptions = _AS_IT_IS,
     kept: Learning | None = None,
     forget: bool = False,
 ) -> Built:
@@ -62,6 +67,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
         watchers: see all that the node gives.
         run: name of the run that begins; None: the transport says when one does.
         command_timeout: s after which the robot ends a command that is not repeated.
+        read: how numbers are read: a cache of numbers that were read otherwise is not used.
         kept: what a node learned that has ended, and this one goes on with.
         forget: set aside what the cache has, and learn from nothing.
 
@@ -77,13 +83,14 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     start = _start_model(table.model, input_name, drives_car=car_of(settings) is not None)
     cache, learner, valid = None, None, None
     if table.cache is not None:
-        cache = Cache(Path(table.cache), CacheKey.of(table.name, input_name, settings))
+        cache = Cache(Path(table.cache), CacheKey.of(table.name, input_name, settings, read))
         found = cache.forget() if forget else cache.load()
         learner, valid = found.learner, found.valid
         if found.said and kept is None:
             said.note(math.nan, found.said, error=learner is None)
     if kept is not None:  # it knows all that the cache does
         learner, valid = kept.learner, kept.valid
+    goes_on = learner is not None
     if learner is None and table.memory and start is not None and before is None:
         said.note(math.nan, "the start model remembers no surfaces: the memory starts empty")
     learner = learner or _new_learner(input_name, settings, before, wheels=transport.wheels)
@@ -113,7 +120,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
         handover=Handover(table.apply, said) if applying else None,
         cache=cache,
     )
-    return Built(LiveNode(parts), learning, said)
+    return Built(LiveNode(parts), learning, said, goes_on)
 
 
 def _new_learner(input_name: str, settings: Settings, before: Model | None, *, wheels: bool) -> MotionLearner:

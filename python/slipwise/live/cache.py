@@ -18,11 +18,17 @@ from slipwise.calibration.core_settings import wheelbase_of
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.errors import OutputError, SettingsError
 from slipwise.files import output_errors, read_whole, write_text_whole, write_whole
+from slipwise.logs.options import LogOptions
 from slipwise.models import SCHEMA_VERSION, Model, load_model
 
 MOST_BYTES = 1 << 30
 MOST_STARTS = 2  # that one state may end
 _LENGTH_BYTES = 8  # of what stands before the learner's bytes
+_NUMBERS = (
+    "command_scale", "wheel_scale", "wheel_radius", "wheel_separation", "pose_yaw_offset",
+    "pose_clock_offset", "command_timeout",
+)  # fmt: skip # options of reading by which the same robot drives otherwise
+_AS_IT_IS = LogOptions()
 _UNFIT = re.compile(r"[^A-Za-z0-9._-]+")
 
 
@@ -37,15 +43,24 @@ class CacheKey:
     settings: str  # hash of the settings that change the learned model
 
     @classmethod
-    def of(cls, vehicle: str, input_name: str, settings: Settings) -> CacheKey:
-        """Return the key of a vehicle that learns from an input with settings."""
+    def of(cls, vehicle: str, input_name: str, settings: Settings, read: LogOptions = _AS_IT_IS) -> CacheKey:
+        """Return the key of a vehicle that learns from an input with settings, `read` so."""
         text = json.dumps(settings.model_dump(mode="json", exclude={"log"}), sort_keys=True)
         text += "with a memory of surfaces" if settings.live.memory else ""
         text += "".join(f" source {name}" for name in settings.live.sources)
         wheelbase = wheelbase_of(settings)
         text += "" if wheelbase is None else f" steers with a wheelbase of {wheelbase!r} m"
+        text += _read_as(read)
         digest = sha256(text.encode()).hexdigest()[:16]
         return cls(vehicle, input_name, settings.basis, SCHEMA_VERSION, digest)
+
+
+def _read_as(read: LogOptions) -> str:
+    """Say by which factors, sizes and offsets numbers are read; empty where they are taken as they are."""
+    wheels = None if read.wheels is None else read.wheels.model_dump(mode="json")
+    said = {name: getattr(read, name) for name in _NUMBERS} | {"wheels": wheels}
+    changed = {name: value for name, value in said.items() if value != getattr(_AS_IT_IS, name)}
+    return json.dumps(changed, sort_keys=True) if changed else ""
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from slipwise.live.samples import Command, Pose, Stamped
-from slipwise.logs.command_timeout import end_stamps
+from slipwise.logs.command_timeout import end_stamps, held_stamps
 from slipwise.logs.findings.command_stops import CommandStops
 from slipwise.logs.findings.finding import Finding
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs, Poses
 
 WAIT = 1.0  # s; a command may come so much later than a pose of its stamp
@@ -79,35 +81,38 @@ class LiveCommandStops:
 
 
 class CommandEnds:
-    """Gives zeros after each command that is not repeated, with the stamps that a log of the same drive has.
+    """Gives what a log of the same drive has after each command that is not repeated, with its stamps.
+
+    It is said again while the watchdog waits for longer than inputs are known; then zeros come.
 
     Args:
         seconds: after which a command ends; None: it is held.
+        unknown_after: an input is unknown once it is older than this [s].
     """
 
-    def __init__(self, seconds: float | None) -> None:
-        self._seconds = seconds
-        self._given: float | None = None  # s, stamp of the last command
-        self._ended = -math.inf  # s, stamp of the last zero
+    def __init__(self, seconds: float | None, unknown_after: float = UNKNOWN_AFTER) -> None:
+        self._seconds, self._unknown_after = seconds, unknown_after
+        self._given: Command | None = None  # the last one
+        self._last = -math.inf  # s, stamp of what was given after it
 
     def before(self, sample: Stamped) -> list[Command]:
-        """Return the zeros that are due before a sample."""
+        """Return what is due before a sample."""
         seconds, t = self._seconds, sample.t
         if seconds is None or not math.isfinite(t):
             return []
         due: list[Command] = []
         if self._given is not None:
             until = t if isinstance(sample, Command) else t - COMES_WITHIN
-            due = [
-                Command(at, 0.0, 0.0, ended=True)
-                for at in end_stamps(self._given, seconds, until)
-                if at > self._ended
-            ]
-            self._ended = due[-1].t if due else self._ended
+            given = self._given
+            held = held_stamps(given.t, seconds, until, self._unknown_after)
+            due = [replace(given, t=at, ended=True) for at in held]
+            due += [Command(at, 0.0, 0.0, ended=True) for at in end_stamps(given.t, seconds, until)]
+            due = [each for each in due if each.t > self._last]
+            self._last = due[-1].t if due else self._last
         if isinstance(sample, Command):
-            self._given = t
+            self._given = sample
         return due
 
     def restart(self) -> None:
         """Another recording begins, or the clock was set."""
-        self._given, self._ended = None, -math.inf
+        self._given, self._last = None, -math.inf

@@ -51,7 +51,7 @@ class Intake:
         input_name: str,
         command_timeout: float | None = None,
     ) -> None:
-        self._ends = CommandEnds(command_timeout)
+        self._ends = CommandEnds(command_timeout, learner.settings.segment.unknown_after)
         self._learner, self._gates, self._said = learner, gates, said
         self._input = Command if input_name == "command" else Wheels
         looks = input_name == "command" and command_timeout is None

@@ -68,7 +68,7 @@ def to_command(kind: str, options: LogOptions) -> ToCommand:
 
     def steering(message: Any, t: float) -> Command:
         v, steer = (np.array([value]) for value in values(message))
-        v, omega = twist_from_steering(v, steer, wheelbase=wheelbase)
+        v, omega = twist_from_steering(v, steer, wheelbase=wheelbase, speed_factor=scale_v)
         return Command(t, scale_v * float(v[0]), scale_omega * float(omega[0]))
 
     return steering

@@ -87,7 +87,8 @@ def command_stream(context: BagContext, samples: Samples, kind: str) -> RawStrea
             "steering commands need the wheelbase", where=samples.topic, advice="give --wheelbase in metres"
         )
     v, steer = samples.values.T
-    v, omega = twist_from_steering(v, steer, wheelbase=context.options.wheelbase)
+    factor, _ = context.options.command_scale
+    v, omega = twist_from_steering(v, steer, wheelbase=context.options.wheelbase, speed_factor=factor)
     return context.stream("commands", samples, {"v": v, "omega": omega})
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Floats, Inputs, Log, Poses
 from slipwise.logs.motion_windows import wrapped
-from slipwise.logs.options import LogOptions
+from slipwise.logs.options import LogOptions, RobotOptions
 
 _AS_IT_IS = (1.0, 1.0)
 
@@ -39,11 +39,20 @@ def scaled_inputs(log: Log, options: LogOptions) -> Log:
 
 
 def turned_poses(log: Log, options: LogOptions) -> Log:
-    """Return the log with its poses turned as the options say, which is noted."""
+    """Return the log with its poses turned as the options say, which is noted.
+
+    Raises:
+        SettingsError: only positions were measured; settings of a robot may turn headings of its other logs.
+    """
     offset = options.pose_yaw_offset
     if offset == 0.0:
         return log
-    runs = tuple(replace(run, poses=_turned(run.poses, offset)) for run in log.runs)
+    if all(poses.course for run in log.runs for poses in (run.poses, *run.others.values())):
+        if isinstance(options, RobotOptions):
+            return log
+        what = "only positions were measured, which have no heading to turn"
+        raise SettingsError(what, where="--pose-yaw-offset", advice="leave it away")
+    runs = tuple(run.with_each_source(lambda poses: _turned(poses, offset)) for run in log.runs)
     return replace(
         log, runs=runs, notes=(*log.notes, f"poses: {offset:.6g} rad added to every heading, as given")
     )

@@ -17,15 +17,21 @@ def twist_from_wheels(
     return twists[:, 0], twists[:, 1]
 
 
-def omega_from_curvature(v: Floats, curvature: Floats) -> Floats:
-    """Return the yaw rate [rad/s] from speed [N] in m/s and curvature [N] in 1/m: kappa V (thesis 3.2)."""
-    return curvature * v
+def omega_from_curvature(v: Floats, curvature: Floats, *, speed_factor: float) -> Floats:
+    """Return the yaw rate [rad/s] from speed [N] and curvature [N] in 1/m: kappa V (thesis 3.2).
+
+    The speed is in m/s once it is multiplied by `speed_factor`.
+    """
+    return speed_factor * curvature * v
 
 
-def twist_from_steering(v: Floats, steer: Floats, *, wheelbase: float) -> tuple[Floats, Floats]:
-    """Return (v [m/s], omega [rad/s]) of a car from its speed [N] in m/s and steering angle [N] in rad.
+def twist_from_steering(
+    v: Floats, steer: Floats, *, wheelbase: float, speed_factor: float
+) -> tuple[Floats, Floats]:
+    """Return (v, omega [rad/s]) of a car from its speed [N] and steering angle [N] in rad.
 
-    Where it stands with turned wheels, v is a nanometre a second, and omega over it says how far.
+    The speed is in m/s once it is multiplied by `speed_factor`, and returned as it is given. Where the car
+    stands with turned wheels, v is a nanometre a second, and omega over it says how far.
     """
     twists: Floats = _core.Ackermann(wheelbase).twists(v, steer)
-    return np.ascontiguousarray(twists[:, 0]), np.ascontiguousarray(twists[:, 1])
+    return np.ascontiguousarray(twists[:, 0]), np.ascontiguousarray(speed_factor * twists[:, 1])

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -80,7 +80,7 @@ class Inputs(_Series):
     omega: Floats  # [N] rad/s, counter-clockwise
     car: CarCommands | None = None  # throttle and steering, where v and omega are about what they do
     wheelbase: float | None = None  # m, of commands to a robot that steers
-    ended: Bools | None = None  # [N] zeros of a watchdog that ended the command before, as was given
+    ended: Bools | None = None  # [N] what a watchdog holds of the command before, or zeros once it ended
 
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "v", "vy", "omega"))
@@ -90,12 +90,12 @@ class Inputs(_Series):
 
     @property
     def ends(self) -> Bools:
-        """Which samples are zeros of a watchdog, [N]."""
+        """Which samples are a watchdog's, [N]."""
         return np.zeros(len(self), bool) if self.ended is None else self.ended
 
     @property
     def sent(self) -> Inputs:
-        """The same without zeros of a watchdog, which nobody sent."""
+        """The same without what a watchdog holds or ends, which nobody sent."""
         return self if self.ended is None else self.select(~self.ended)
 
     def twists(self) -> Floats:
@@ -177,7 +177,7 @@ class Run:
     poses: Poses
     extra: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # rows of a tidy log, with their "t"
     others: Mapping[str, Poses] = field(default_factory=dict)  # of further sources, by name
-    source: str = ""  # name of the first source, where there are several
+    source: str = ""  # name of the first source, where sources have names
     files: tuple[str, ...] = ()  # that it comes from: paths of sources of the log
     forces: Forces | None = None  # that are known to push the robot
 
@@ -198,6 +198,11 @@ class Run:
         if not times:
             return 0.0, 0.0
         return float(min(t[0] for t in times)), float(max(t[-1] for t in times))
+
+    def with_each_source(self, change: Callable[[Poses], Poses]) -> Run:
+        """Return the run with the poses of all sources as `change` returns them."""
+        others = {name: change(poses) for name, poses in self.others.items()}
+        return replace(self, poses=change(self.poses), others=others)
 
     def place(self, t: float) -> str:
         """Say where a time [s] is: counted from the run's start, and as it stands in the file."""

@@ -20,7 +20,7 @@ from slipwise.logs.command_timeout import with_ended_commands
 from slipwise.logs.corrections import scaled_inputs, turned_poses
 from slipwise.logs.findings.finding import RefusedLogError
 from slipwise.logs.findings.steering import NotSteered, driven_sideways
-from slipwise.logs.log import Floats, Inputs, Log, Poses, Run, run_name
+from slipwise.logs.log import Floats, Inputs, Log, Poses, Run, empty_poses, run_name
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
 from slipwise.logs.remote import local_file
@@ -153,7 +153,7 @@ def _completed(log: Log, options: LogOptions) -> Log:
         log = with_shifted_poses(log, options)
     log = cut_to_span(turned_poses(log, options), options.start, options.end)
     log = replace(log, sideways=options.sideways) if options.sideways else log
-    log = with_ended_commands(log, options.command_timeout)
+    log = with_ended_commands(log, options.command_timeout, options.unknown_after)
     if options.car is None:
         return log if options.wheelbase is None else _steered(log, options.wheelbase)
     from slipwise.logs.car_commands import with_car_commands
@@ -185,11 +185,12 @@ def _named(log: Log, file: Path, path: Path) -> Log:
 
 
 def _with_first(first: str, run: Run) -> Run:
-    """Return a run whose first source of poses is that of all logs, where it has that one."""
-    if run.source == first or first not in run.others:
+    """Return a run whose first source of poses is that of all logs; without poses where it lacks that one."""
+    if run.source in ("", first):
         return run
     others = {name: poses for name, poses in run.others.items() if name != first}
-    return replace(run, poses=run.others[first], others={run.source: run.poses, **others}, source=first)
+    poses = run.others.get(first, empty_poses())
+    return replace(run, poses=poses, others={run.source: run.poses, **others}, source=first)
 
 
 def joined(logs: list[Log]) -> Log:

@@ -77,6 +77,8 @@ def with_other_poses(log: Log, path: Path, options: LogOptions) -> Log:
 def with_shifted_poses(log: Log, options: LogOptions) -> Log:
     """Return the log with its own poses on the clock of its inputs, by the offset that is given or found.
 
+    Poses of further sources are shifted as those of the first: how late they are beside it stays.
+
     Raises:
         LogError: the offset cannot be found.
     """
@@ -95,7 +97,7 @@ def with_shifted_poses(log: Log, options: LogOptions) -> Log:
     columns = {"x": x, "y": y} | ({} if has_course(usable) else {"yaw": yaw})
     stream = RawStream("poses", t, columns, np.arange(len(t)), str)
     offset, said = _offset(log, stream, Path("its poses"), options)
-    shifted = tuple(replace(run, poses=replace(run.poses, t=run.poses.t + offset)) for run in log.runs)
+    shifted = tuple(run.with_each_source(lambda own: replace(own, t=own.t + offset)) for run in log.runs)
     return replace(log, runs=shifted, notes=(*log.notes, *said))
 
 

@@ -304,7 +304,7 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
             poses, *further = (_poses(own, inputs, tally) for own in found)
             others, source = dict(zip(names[1:], further, strict=True)), names[0]
     extra = {"t": t, **extra} if extra else {}
-    return Run(name, commands, wheels, poses, extra, others, source if others else "", forces=forces)
+    return Run(name, commands, wheels, poses, extra, others, source, forces=forces)
 
 
 def _with_ends(commands: InputColumns) -> dict[str, Floats]:

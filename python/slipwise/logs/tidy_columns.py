@@ -45,7 +45,7 @@ class InputColumns:
     v: Floats
     vy: Floats | None
     omega: Floats
-    ended: Floats | None = None  # 1 where zeros say that the command before ended
+    ended: Floats | None = None  # 1 where nobody sent it: the command before is held, or ended
 
     def columns(self) -> dict[str, Floats]:
         """Return the columns by name, without a sideways speed where there is none."""
@@ -261,15 +261,14 @@ def _turning_commands(
     table: Columns, v: Floats, options: LogOptions, tally: Tally, notes: list[str]
 ) -> tuple[Floats, Floats | None]:
     """Take cmd_omega; where it is empty the curvature (thesis 3.2), and then the steering angle."""
-    names = table.names
+    names, (factor, _) = table.names, options.command_scale
     omega = table.numbers("cmd_omega", tally) if "cmd_omega" in names else None
     if "cmd_curvature" in names:
-        turned = omega_from_curvature(v, table.numbers("cmd_curvature", tally))
+        turned = omega_from_curvature(v, table.numbers("cmd_curvature", tally), speed_factor=factor)
         omega = _filled(omega, turned, f"{table.path.name}: cmd_omega from cmd_curvature and speed", notes)
     if "cmd_steer" in names and options.wheelbase is not None:
-        speed, steered = twist_from_steering(
-            v, table.numbers("cmd_steer", tally), wheelbase=options.wheelbase
-        )
+        angle = table.numbers("cmd_steer", tally)
+        speed, steered = twist_from_steering(v, angle, wheelbase=options.wheelbase, speed_factor=factor)
         note = f"{table.path.name}: cmd_omega from cmd_steer and wheelbase {options.wheelbase} m"
         if omega is not None:  # at a standstill it is 0, and the angle says how the wheels are turned
             omega = np.where((v == 0.0) & (omega == 0.0) & np.isfinite(steered), steered, omega)

@@ -60,7 +60,12 @@ COLUMNS = (
     Column("cmd_curvature", "command", "number", "1/m", "commanded curvature"),
     Column("cmd_steer", "command", "number", "rad", "commanded steering angle"),
     Column(
-        "cmd_ended", "command", "integer", "", "1 where zeros say that the command before ended", "shared"
+        "cmd_ended",
+        "command",
+        "integer",
+        "",
+        "1 where nobody sent it: the command before is held, or zeros say that it ended",
+        "shared",
     ),
     Column("cmd_dir", "command", "number", "rad", "commanded direction of travel, from the robot's x axis"),
     Column(

@@ -97,7 +97,7 @@ def _not_written(log: Log) -> tuple[LeftOut, ...]:
     for run in log.runs:
         counts["fixes of a satellite receiver"] += 0 if run.poses.fix is None else len(run.poses)
         ended = 0 if run.commands is None else int(run.commands.ends.sum())
-        counts["zeros that end commands (--command-timeout)"] += ended
+        counts["commands that a watchdog holds or ends (--command-timeout)"] += ended
         for name, other in run.others.items():
             counts[f"poses of the source {name}"] += len(other)
         for name, values in run.extra.items():

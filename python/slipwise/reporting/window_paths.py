@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.settings import make_settings
+from slipwise.calibration.settings import sensor_of
 from slipwise.logs.log import Floats, Poses, Run
 from slipwise.prediction import asked_twists
 from slipwise.reporting.chosen_windows import ChosenWindow
@@ -41,7 +41,9 @@ def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[Cho
         for window in (window for window in chosen if window.run == place):
             measured = _measured(run.poses, window)
             if measured is not None:
-                segment = segments.get(_stamp(window.t_start)) or _level_segment(window, _sensor(contents))
+                segment = segments.get(_stamp(window.t_start)) or _level_segment(
+                    window, sensor_of(contents.calibration.model)
+                )
                 paths[window] = _paths(contents, window, _Drive(history, limited, segment, measured))
     return paths
 
@@ -97,7 +99,7 @@ def _segments(contents: Contents, run: Run) -> dict[int, _core.Segment]:
     horizon = contents.longest_horizon
     if horizon is None:
         return {}
-    rules = WindowRules(sensor=_sensor(contents))
+    rules = WindowRules(sensor=sensor_of(contents.calibration.model))
     from_commands = contents.evaluation.input == "command"
     windows = cut_windows([run], rules.stream_settings(horizon, from_commands=from_commands))
     stamps = (_stamp(start) for start in windows.start.tolist())
@@ -112,12 +114,6 @@ def _stamp(t: float) -> int:
 def _level_segment(window: ChosenWindow, sensor: tuple[float, float, float]) -> _core.Segment:
     level = _core.Segment(window.t_start, window.t_end, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
     return level.with_sensor(_core.Pose2(*sensor))
-
-
-def _sensor(contents: Contents) -> tuple[float, float, float]:
-    """Return where the settings say that the pose sensor sits."""
-    given = dict(contents.calibration.model.content.provenance.settings)
-    return make_settings({"sensor_extrinsics": given.get("sensor_extrinsics", {})}).sensor_extrinsics.pose
 
 
 def _known_parameters(contents: Contents, window: ChosenWindow) -> Floats | None:

@@ -10,6 +10,7 @@ import pytest
 from sample_logs import Drive, poses_of, simulated_log
 from sample_models import Made, make_model, named
 
+import slipwise as sw
 from slipwise import _core
 from slipwise.calibration import Calibration, calibrate, make_settings
 from slipwise.errors import SettingsError
@@ -138,3 +139,16 @@ def test_slip_that_is_bent_or_told_on_one_circle_alone_is_no_place_of_a_sensor()
     (sentence,) = sensor_sentences(make_model(arm))
     assert "m ahead of the centre of turning" in sentence
     assert not sensor_sentences(make_model(replace(arm, speed=(0.5, 0.5), yaw_rate=(0.3, 0.3))))
+
+
+def test_a_model_is_judged_by_the_sensor_that_it_was_told_of(log: Log) -> None:
+    place = dict(zip(("x", "y", "yaw"), SENSOR, strict=True))
+    model = calibrated(log, place).model
+    options = EvaluationOptions(horizons=(2.0,), methods=("none",), model=model)
+    told = make_settings({"basis": "edd-2", "sensor_extrinsics": place})
+    errors = [
+        evaluate(log, input="wheel", settings=settings, options=options).score("model", 2.0).position.mean
+        for settings in (told, None)
+    ]
+    assert errors[0] == errors[1] < 0.03
+    assert sw.compare(model, model, log).evaluation.score("old", 2.0).position.mean == errors[0]

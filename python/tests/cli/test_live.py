@@ -55,6 +55,11 @@ def test_labels_without_a_memory_are_refused(drive: Path, capsys: pytest.Capture
     assert "add --memory" in capsys.readouterr().err
 
 
+def test_a_speed_of_what_is_not_replayed_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["live", "--transport", "stdin", "--rate", "10"]) == 2
+    assert "samples come as they are sent (--rate): give --replay with it" in capsys.readouterr().err
+
+
 def wait_until_under_way(process: subprocess.Popen[str]) -> None:
     """Until the process has said where it stands, and learned for four seconds more."""
     assert process.stdout is not None

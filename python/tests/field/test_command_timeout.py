@@ -119,23 +119,39 @@ def test_a_robot_that_holds_its_commands_is_told_of_unknown_after(tmp_path: Path
     assert not result.verdict.contradictions
 
 
-def test_live_ends_commands_at_the_stamps_of_the_log(tmp_path: Path) -> None:
-    drive = field_drive(30.0, hold=1.2, period=1.2, timeout=0.5)
+@pytest.mark.parametrize("seconds", [0.5, 0.9])
+def test_live_ends_commands_at_the_stamps_of_the_log(seconds: float, tmp_path: Path) -> None:
+    drive = field_drive(30.0, hold=1.2, period=1.2, timeout=seconds)
     path = rare_commands(tmp_path, drive, 1.2)
-    before, after = open_log(path).runs[0], open_log(path, options=LogOptions(command_timeout=0.5)).runs[0]
+    before = open_log(path).runs[0]
+    after = open_log(path, options=LogOptions(command_timeout=seconds)).runs[0]
     assert before.commands is not None
     assert after.commands is not None
     samples = [
-        *(Command(t, 1.0, 0.0) for t in before.commands.t),
+        *(Command(*row) for row in before.commands.rows()[:, [0, 1, 3, 2]].tolist()),
         *(Pose(t, 0.0, 0.0, 0.0) for t in before.poses.t),
     ]
-    ends, stamps = CommandEnds(0.5), []
+    ends, given = CommandEnds(seconds), []
     for sample in sorted(samples, key=lambda each: each.t):
-        stamps += [zero.t for zero in ends.before(sample)]
-        stamps += [sample.t] if isinstance(sample, Command) else []
+        given += ends.before(sample)
+        given += [sample] if isinstance(sample, Command) else []
     until = before.poses.t[-1] - COMES_WITHIN
-    np.testing.assert_array_equal(stamps, after.commands.t[: len(stamps)])
-    assert after.commands.t[len(stamps) :].min(initial=np.inf) >= until
+    rows = np.array([(each.t, each.v, each.vy, each.omega) for each in given])
+    np.testing.assert_array_equal(rows, after.commands.rows()[: len(rows)])
+    assert after.commands.t[len(rows) :].min(initial=np.inf) >= until
+
+
+def test_a_command_is_known_until_its_watchdog_ends_it(tmp_path: Path) -> None:
+    given = ["0.0,1.0,0.5,0,0,0", "3.0,0.5,0.1,1,0,0"]
+    poses = [f"{0.1 * k:.1f},,,{0.01 * k},0,0" for k in range(1, 50) if k != 30]
+    (tmp_path / "a.csv").write_text("\n".join(["t,cmd_v,cmd_omega,x,y,yaw", *given, *poses, ""]))
+    commands = open_log(tmp_path / "a.csv", command_timeout=1.4).runs[0].commands
+    assert commands is not None
+    first = commands.t < 2.9
+    assert commands.v[first & (commands.t < 1.4)].tolist() == [1.0] * 4
+    assert commands.t[first & (commands.v == 0.0)].tolist() == pytest.approx(1.4 + 0.2 * np.arange(8))
+    assert np.diff(commands.t).max() < 0.5
+    assert commands.sent.t.tolist() == [0.0, 3.0]  # a zero of the same stamp gives way
 
 
 @pytest.mark.parametrize("unknown_after", [0.5, 3.0])

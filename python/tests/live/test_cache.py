@@ -9,13 +9,17 @@ import pytest
 from sample_logs import Drive, simulated_log
 from sample_models import make_model, named
 
-from slipwise.calibration import Settings
+import slipwise as sw
+from slipwise.calibration import Settings, make_settings
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.prepared_run import prepare_run
+from slipwise.cli.live_parts import model_of_replay
 from slipwise.errors import OutputError, SettingsError
+from slipwise.live.build import build_node
 from slipwise.live.cache import Cache, CacheKey
-from slipwise.live.replay import samples_of
+from slipwise.live.replay import Replay, samples_of
 from slipwise.live.samples import Pose
+from slipwise.logs import LogOptions
 
 KEY = CacheKey.of("husky-1", "wheel", Settings())
 
@@ -56,6 +60,8 @@ def test_nothing_is_said_where_there_is_none(tmp_path: Path) -> None:
         (CacheKey.of("husky-2", "wheel", Settings()), "vehicle"),
         (CacheKey.of("husky-1", "wheel", Settings(basis="edd-2")), "basis"),
         (CacheKey.of("husky-1", "wheel", Settings(learn_clock_offset=False)), "set of settings"),
+        (CacheKey.of("husky-1", "wheel", Settings(), LogOptions(wheel_scale=(2.0, 1.0))), "set of settings"),
+        (CacheKey.of("husky-1", "wheel", Settings(), LogOptions(vehicle="robotino")), "set of settings"),
     ],
 )
 def test_anothers_is_refused_and_kept(
@@ -139,6 +145,24 @@ def test_a_state_that_cannot_be_judged_is_neither_saved_nor_used(
 def test_settings_of_the_node_alone_are_no_other_robot() -> None:
     changed = Settings().model_copy(update={"live": Settings().live.model_copy(update={"name": "another"})})
     assert CacheKey.of("husky-1", "wheel", changed) == KEY
+
+
+def test_a_log_that_is_replayed_again_is_said_and_counts_with_what_was_learned(tmp_path: Path) -> None:
+    sw.save_log(simulated_log(Drive(seconds=90.0)), tmp_path / "drive.csv")
+    log = sw.open_log(tmp_path / "drive.csv")
+    settings = make_settings({"basis": "edd-2", "live": {"cache": str(tmp_path / "cache")}})
+    models = []
+    for _ in range(2):
+        built = build_node(Replay(log, "wheel", rate=0.0), "wheel", settings)
+        built.learning.learner.know_log(log)
+        built.node.run()
+        models.append(model_of_replay(built, log).content)
+    first, second = models
+    assert second.provenance.logs == first.provenance.logs
+    assert second.provenance.learned_segments == 2 * first.provenance.learned_segments
+    said = ("The learner has learned", "counts twice")
+    assert all(words in second.verdict.sentence for words in said)
+    assert not any(words in first.verdict.sentence for words in said)
 
 
 def test_a_folder_that_cannot_be_written_is_an_error_that_says_so(

@@ -55,7 +55,8 @@ def test_commands_of_every_type_are_scaled() -> None:
     assert to_command(TWIST_STAMPED, options)(stamped, 1.0) == Command(1.0, 1.0, -0.2)
     car = to_command(ACKERMANN, options)(Made(drive=Made(speed=1.0, steering_angle=0.3)), 1.0)
     assert car is not None
-    assert car.omega == pytest.approx(-math.tan(0.3) / 2.0)
+    assert car.v == pytest.approx(2.0)
+    assert car.omega == pytest.approx(-2.0 * math.tan(0.3) / 2.0)  # of the speed as it is corrected
     with pytest.raises(SettingsError, match="--wheelbase"):
         to_command(ACKERMANN, LogOptions())
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from contradictory_logs import scaled, sound_log, turned, with_poses
 
 from slipwise.calibration import make_settings
 from slipwise.errors import SettingsError
-from slipwise.logs import Log, LogOptions
+from slipwise.logs import Log, LogOptions, open_log
 from slipwise.logs.corrections import scaled_inputs, turned_poses
 from slipwise.logs.findings.checks import findings_of
 
@@ -51,6 +52,32 @@ def test_a_yaw_offset_gives_the_sound_log_back(angle: float) -> None:
     assert findings_of(cured, "wheel") == ()
 
 
+def test_poses_of_all_sources_are_turned_and_shifted(tmp_path: Path) -> None:
+    rows = [f"{0.1 * k:.1f},1,0,{0.1 * k:.1f},0,{0.01 * (k % 7):.2f},{'ab'[k % 2]}" for k in range(100)]
+    (tmp_path / "a.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y,yaw,source", *rows, ""]))
+    (one,) = open_log(tmp_path / "a.csv").runs
+    (other,) = open_log(tmp_path / "a.csv", pose_yaw_offset=0.4, pose_clock_offset=-0.2).runs
+    for before, after in ((one.poses, other.poses), (one.others["b"], other.others["b"])):
+        np.testing.assert_allclose(after.yaw - before.yaw, 0.4)
+        np.testing.assert_allclose(after.t - before.t, -0.2)
+
+
+@pytest.mark.parametrize(("turn", "options"), [("cmd_curvature", {}), ("cmd_steer", {"wheelbase": 0.5})])
+def test_a_robot_that_steers_turns_with_the_speed_as_it_is_corrected(
+    turn: str, options: dict[str, float], tmp_path: Path
+) -> None:
+    rows = [f"{0.1 * k:.1f},{3.6 + k % 5},{0.2 * (k % 3)},{0.1 * k:.1f},0,0" for k in range(50)]
+    (tmp_path / "a.csv").write_text("\n".join([f"t,cmd_v,{turn},x,y,yaw", *rows, ""]))
+    as_it_is, corrected = (
+        open_log(tmp_path / "a.csv", command_scale=scale, **options).runs[0].commands
+        for scale in ((1.0, 1.0), (1.0 / 3.6, 1.0))
+    )
+    assert as_it_is is not None
+    assert corrected is not None
+    np.testing.assert_allclose(corrected.v, as_it_is.v / 3.6)
+    np.testing.assert_allclose(corrected.omega, as_it_is.omega / 3.6)
+
+
 def test_roll_and_pitch_are_turned_with_the_sensor() -> None:
     size = len(sound_log().runs[0].poses)
     nose_down = with_poses(sound_log(), lambda p: replace(p, roll=np.zeros(size), pitch=np.full(size, 0.1)))
@@ -62,6 +89,13 @@ def test_roll_and_pitch_are_turned_with_the_sensor() -> None:
     np.testing.assert_allclose(backwards.pitch, -0.1, atol=1e-12)
     np.testing.assert_allclose(sideways.pitch, 0.0, atol=1e-12)
     np.testing.assert_allclose(sideways.roll, 0.1, atol=1e-12)  # what was ahead is on the right
+
+
+def test_positions_have_no_heading_to_turn(tmp_path: Path) -> None:
+    rows = [f"{0.1 * k:.1f},1,0,{0.1 * k:.1f},0" for k in range(50)]
+    (tmp_path / "a.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y", *rows, ""]))
+    with pytest.raises(SettingsError, match=r"only positions.*--pose-yaw-offset"):
+        open_log(tmp_path / "a.csv", pose_yaw_offset=1.0)
 
 
 @pytest.mark.parametrize(

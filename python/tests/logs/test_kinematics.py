@@ -21,20 +21,21 @@ def test_a_faster_right_side_turns_to_the_left() -> None:
 
 def test_a_curvature_turns_backwards_when_the_robot_backs_up() -> None:
     np.testing.assert_allclose(
-        omega_from_curvature(np.array([2.0, -2.0, 0.0]), np.array([0.5, 0.5, 9.0])), [1.0, -1.0, 0.0]
+        omega_from_curvature(np.array([2.0, -2.0, 0.0]), np.array([0.5, 0.5, 9.0]), speed_factor=1.0),
+        [1.0, -1.0, 0.0],
     )
 
 
 def test_a_steered_car_turns_about_the_point_that_its_wheelbase_and_angle_give() -> None:
     steer = np.array([0.3, -0.3, 0.0])
-    v, omega = twist_from_steering(np.full(3, 4.0), steer, wheelbase=2.5)
+    v, omega = twist_from_steering(np.full(3, 4.0), steer, wheelbase=2.5, speed_factor=1.0)
     np.testing.assert_array_equal(v, 4.0)
     np.testing.assert_allclose(omega, 4.0 * np.tan(steer) / 2.5, atol=1e-15)
 
 
 def test_a_steered_car_that_stands_keeps_how_its_wheels_are_turned() -> None:
     steer = np.array([0.3, 0.0, np.nan])
-    v, omega = twist_from_steering(np.zeros(3), steer, wheelbase=2.5)
+    v, omega = twist_from_steering(np.zeros(3), steer, wheelbase=2.5, speed_factor=1.0)
     assert 0.0 < v[0] < 1e-8
     assert omega[0] / v[0] == pytest.approx(np.tan(0.3) / 2.5)
     assert (v[1], omega[1]) == (0.0, 0.0)

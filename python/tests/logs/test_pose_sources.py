@@ -79,6 +79,18 @@ def test_of_several_logs_one_source_is_the_first(tmp_path: Path) -> None:
     assert all(not run.poses.y.any() and run.others["rtk"].y.all() for run in runs)
 
 
+def test_poses_of_another_source_alone_are_not_those_of_the_first(tmp_path: Path) -> None:
+    for name, own in (("one", ("lidar", "rtk")), ("two", ("rtk",))):
+        rows = [f"{0.1 * k:.1f},1,0,{0.1 * k:.1f},0,0,{own[k % len(own)]}" for k in range(40)]
+        (tmp_path / f"{name}.csv").write_text("\n".join(["t,odo_v,odo_omega,x,y,yaw,source", *rows, ""]))
+    first, second = open_log(tmp_path / "one.csv", tmp_path / "two.csv").runs
+    assert (first.source, len(first.poses), len(first.others["rtk"])) == ("lidar", 20, 20)
+    assert (second.source, len(second.poses), len(second.others["rtk"])) == ("lidar", 0, 40)
+    (alone,) = open_log(tmp_path / "two.csv").runs
+    assert (alone.source, len(alone.poses), dict(alone.others)) == ("rtk", 40, {})
+    assert source_names((alone,)) == ()
+
+
 def test_a_column_says_whose_a_pose_is(tmp_path: Path) -> None:
     log = open_log(table(tmp_path / "a.csv"))
     (run,) = log.runs

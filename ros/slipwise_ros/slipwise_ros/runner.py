@@ -132,6 +132,7 @@ class Runner:
             watchers=[Notes(ros)],
             run="live",
             command_timeout=options.command_timeout,
+            read=options,
             kept=self._learning,
             forget=forget,
         )

@@ -36,7 +36,7 @@ from slipwise.logs.findings.pose_streams import ClockOffset, FrozenPoses
 from slipwise.logs.findings.readings import READINGS
 from slipwise.logs.findings.repeated_wheels import RepeatedWheels
 from slipwise.logs.findings.saturation import Saturated
-from slipwise.logs.findings.seen import Seen, WholeLog
+from slipwise.logs.findings.seen import AT_CENTRE, Place, Seen, WholeLog
 from slipwise.logs.findings.sensor_place import SensorOffCentre
 from slipwise.logs.findings.source_scale import SourceScale
 from slipwise.logs.findings.sources import IdleSource, TwoSources
@@ -180,7 +180,7 @@ def not_shown_yet(seen: Seen) -> str:
 
 
 def findings_of(
-    log: Log, input_name: str, unknown_after: float = UNKNOWN_AFTER, *, sensor_yaw: float = 0.0
+    log: Log, input_name: str, unknown_after: float = UNKNOWN_AFTER, *, sensor: Place = AT_CENTRE
 ) -> tuple[Finding, ...]:
     """Return what is wrong with poses and inputs of a log, where no learner has taken it.
 
@@ -188,19 +188,19 @@ def findings_of(
         log: what `open_log` returned.
         input_name: "command" or "wheel", the input that is learned from.
         unknown_after: an input is unknown once it is older than this [s].
-        sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
+        sensor: where the pose sensor is known to sit on the robot: x, y [m], yaw [rad].
     """
-    return findings_of_each(log, (input_name,), unknown_after, sensor_yaw)
+    return findings_of_each(log, (input_name,), unknown_after, sensor)
 
 
 def findings_of_each(
-    log: Log, inputs: Iterable[str], unknown_after: float, sensor_yaw: float
+    log: Log, inputs: Iterable[str], unknown_after: float, sensor: Place
 ) -> tuple[Finding, ...]:
     """Return what is wrong with poses and each of some inputs of a log; what no input changes, once."""
     found: list[Finding] = []
     before: Seen | None = None
     for name in inputs:
-        seen = seen_in(log, name, unknown_after, sensor_yaw, before)
+        seen = seen_in(log, name, unknown_after, sensor, before)
         checks = [check for check in WHOLE if before is None or check.of_input]
         first = findings_in(seen)
         found += (*first, *findings_of_others(log, name, unknown_after, first))
@@ -210,7 +210,7 @@ def findings_of_each(
 
 
 def seen_in(
-    log: Log, input_name: str, unknown_after: float, sensor_yaw: float = 0.0, before: Seen | None = None
+    log: Log, input_name: str, unknown_after: float, sensor: Place = AT_CENTRE, before: Seen | None = None
 ) -> Seen:
     """Return poses against inputs of a log; arguments as of `findings_of`, `before` of another input."""
     runs = [run for run in log.runs if has_input(run, input_name)]
@@ -221,7 +221,7 @@ def seen_in(
         input_name=input_name,
         positions=has_course(log.runs),
         gyro=False,
-        sensor_yaw=sensor_yaw,
+        sensor=sensor,
         commanded=Commanded.of(runs),
     )
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from slipwise.addresses import shown
 from slipwise.logs.findings.checks import EVERY, findings_of_each
 from slipwise.logs.findings.finding import Finding, RefusedLogError
+from slipwise.logs.findings.seen import AT_CENTRE, Place
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log
 from slipwise.logs.open_log import open_log
@@ -28,13 +29,13 @@ class Diagnosis:
     log: Log | None  # None where it is refused for what was found
 
 
-def diagnose(path: str | Path, options: LogOptions, *, sensor_yaw: float = 0.0) -> Diagnosis:
+def diagnose(path: str | Path, options: LogOptions, *, sensor: Place = AT_CENTRE) -> Diagnosis:
     """Read a log and say what is wrong with it.
 
     Args:
         path: as for `open_log`.
         options: as for `open_log`.
-        sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
+        sensor: where the pose sensor is known to sit on the robot: x, y [m], yaw [rad].
 
     Raises:
         LogError: the file is missing, damaged or of an unknown kind, or makes no log.
@@ -43,22 +44,22 @@ def diagnose(path: str | Path, options: LogOptions, *, sensor_yaw: float = 0.0) 
         log = open_log(path, options=options)
     except RefusedLogError as refused:
         return Diagnosis(shown(Path(path)), (refused.found,), None)
-    return Diagnosis(shown(Path(path)), diagnose_log(log, options.unknown_after, sensor_yaw=sensor_yaw), log)
+    return Diagnosis(shown(Path(path)), diagnose_log(log, options.unknown_after, sensor=sensor), log)
 
 
 def diagnose_log(
-    log: Log, unknown_after: float = UNKNOWN_AFTER, *, sensor_yaw: float = 0.0
+    log: Log, unknown_after: float = UNKNOWN_AFTER, *, sensor: Place = AT_CENTRE
 ) -> tuple[Finding, ...]:
     """Return all that is wrong in a log, each kind of thing once.
 
     Args:
         log: what `open_log` returned.
         unknown_after: an input is unknown once it is older than this [s].
-        sensor_yaw: how the pose sensor is known to be turned on the robot [rad].
+        sensor: where the pose sensor is known to sit on the robot: x, y [m], yaw [rad].
     """
     there = {"command": any(run.commands for run in log.runs), "wheel": any(run.wheels for run in log.runs)}
     names = [name for name, known in there.items() if known]
-    return each_once((*log.found, *findings_of_each(log, names, unknown_after, sensor_yaw)))
+    return each_once((*log.found, *findings_of_each(log, names, unknown_after, sensor)))
 
 
 def each_once(found: Iterable[Finding]) -> tuple[Finding, ...]:

@@ -34,6 +34,10 @@ WORDS = {
 OTHER = {"command": "wheel", "wheel": "command"}
 
 
+Place = tuple[float, float, float]  # x, y [m], yaw [rad]
+AT_CENTRE: Place = (0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True, eq=False)
 class WholeLog:
     """A log, for what only whoever has all of it knows."""
@@ -52,8 +56,13 @@ class Seen:
     input_name: str  # "command" or "wheel", the input that is learned from
     positions: bool  # headings are courses, which tell nothing of a heading
     gyro: bool  # turns of a gyro are learned from
-    sensor_yaw: float  # how the pose sensor is known to be turned on the robot [rad]
+    sensor: Place  # where the pose sensor is known to sit on the robot
     commanded: Commanded = Commanded()  # what the commands are
+
+    @property
+    def sensor_yaw(self) -> float:
+        """How the pose sensor is known to be turned on the robot [rad]."""
+        return self.sensor[2]
 
     @property
     def words(self) -> InputWords:

@@ -35,7 +35,8 @@ class SensorOffCentre(Check):
             return None
         near = np.abs(w.turn) < MOST_TURN
         turn, ahead = w.turn[near], w.course_ahead(seen.sensor_yaw)[near]
-        along, across = w.distance[near] * np.cos(ahead), w.distance[near] * np.sin(ahead)
+        (known_x, known_y, _), distance = seen.sensor, w.distance[near]
+        along, across = distance * np.cos(ahead) + known_y * turn, distance * np.sin(ahead) - known_x * turn
         square = float(turn @ turn)
         if len(turn) < _ENOUGH or square < _TURNED:
             return None
@@ -44,6 +45,7 @@ class SensorOffCentre(Check):
         if abs(x) < _FAR or abs(clear) < _CLEAR:
             return None
         _, y = np.linalg.lstsq(np.column_stack((w.forward[near], -turn)), along, rcond=None)[0].tolist()
+        x, y = x + known_x, y + known_y
         side, end = "left of" if y > 0.0 else "right of", "ahead of" if x > 0.0 else "behind"
         return self.found(
             f"the poses move sideways by {abs(x):.2f} m for each radian of turn: a sensor {abs(x):.2f} m "

@@ -22,6 +22,7 @@ from contradictory_logs import (
     with_poses,
     with_runs,
 )
+from faulty_logs import off_centre
 from sample_logs import Drive, steady_run
 
 from slipwise import _core
@@ -131,7 +132,7 @@ def test_a_sensor_that_is_turned_by_20_degrees_is_said_with_the_angle_and_spoils
         assert found.evidence == pytest.approx(-20.0, abs=1.0)
         assert "to the right of their heading" in found.sentence
         assert "--set sensor_extrinsics.yaw=0.3" in found.advice[0]
-        assert findings_of(log, name, sensor_yaw=np.radians(20.0)) == ()
+        assert findings_of(log, name, sensor=(0.0, 0.0, np.radians(20.0))) == ()
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(3.6, "in km/h (28 % of m/s)"), (2.237, "in miles per hour")])
@@ -190,7 +191,16 @@ def test_an_arm_of_the_sensor_in_turns_to_one_side_is_not_said_to_turn_it() -> N
 
 def test_a_sensor_that_is_known_to_be_turned_is_no_contradiction() -> None:
     log = turned(sound_log(), 0.5 * np.pi)
-    assert findings_of(log, "wheel", sensor_yaw=0.5 * np.pi) == ()
+    assert findings_of(log, "wheel", sensor=(0.0, 0.0, 0.5 * np.pi)) == ()
+
+
+def test_a_sensor_that_is_known_to_sit_off_the_centre_is_none() -> None:
+    log = with_poses(sound_log(), lambda p: off_centre(p, 1.0, 0.2))
+    (found,) = findings_of(log, "wheel")
+    assert found.kind == "sensor-off-centre"
+    assert findings_of(log, "wheel", sensor=(1.0, 0.2, 0.0)) == ()
+    (nearer,) = findings_of(log, "wheel", sensor=(0.4, 0.2, 0.0))
+    assert nearer.advice == found.advice
 
 
 def test_a_log_without_the_input_or_without_motion_has_none() -> None:

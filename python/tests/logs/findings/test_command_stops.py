@@ -110,7 +110,7 @@ def test_zeros_of_a_watchdog_are_not_written_as_messages(tmp_path: Path) -> None
     """A topic holds what was sent; the option is given again with the bag."""
     log = open_log(rare_commands(tmp_path), command_timeout=0.5)
     (left_out,) = save_log(log, tmp_path / "converted.mcap")
-    assert left_out.reason.startswith("zeros that end commands (--command-timeout)")
+    assert left_out.reason.startswith("commands that a watchdog holds or ends (--command-timeout)")
     assert left_out.count == 3 * 119
     (found,) = findings_of(open_log(tmp_path / "converted.mcap"), "command")
     assert found.kind == "command-timeout"

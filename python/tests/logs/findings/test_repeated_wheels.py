@@ -14,14 +14,14 @@ from slipwise import _core
 from slipwise.logs import Inputs, Log, Poses, Run
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.repeated_wheels import RepeatedWheels
-from slipwise.logs.findings.seen import Seen
+from slipwise.logs.findings.seen import AT_CENTRE, Seen
 from slipwise.logs.motion_windows import evidence_of
 
 
 def found_in(pairs: list[tuple[Inputs, Poses]]) -> Finding | None:
     """Look for it in runs of wheels and poses."""
     evidence = evidence_of([Run("run", None, wheels, poses) for wheels, poses in pairs], 0.5)
-    seen = Seen(evidence, ["run"], "wheel", positions=False, gyro=False, sensor_yaw=0.0)
+    seen = Seen(evidence, ["run"], "wheel", positions=False, gyro=False, sensor=AT_CENTRE)
     return RepeatedWheels().look(seen)
 
 
