@@ -15,7 +15,8 @@ Floats = NDArray[np.float64]
 _KEPT = (0.0, 0.3, 0.5, 0.65, 0.8, 0.9)  # of the scatter, from one log to the next at the usual gap
 _SIZES = np.concatenate(([0.0], np.logspace(-1.5, 3.0, 16)))  # variance of the scatter, of what logs say
 _RATES = np.concatenate(([0.0], np.logspace(-3.0, 3.0, 19)))  # variance of a walk's step, of what logs say
-_NONE = 0.6  # chance of no scatter, before anything is known
+_NONE = 0.6  # chance of no scatter, before anything is known,
+_NONE_GUARDED = 0.2  # and for the level of a test, which has to hold where there is some
 FEWEST_OF_WALK = 6  # logs, below which a walk cannot be told from scatter
 _LONGEST_GAP = 10.0  # usual gaps, after which scatter is forgotten in any case
 _ALONE = 1.0  # vehicles that "any scatter" counts as beside those of the fleet
@@ -74,6 +75,7 @@ def trends(all_series: Sequence[Series]) -> list[Trend]:
     Scatter is an AR(1) between logs. How large it is and how long it lasts is averaged over what the logs of
     the vehicle say (restricted likelihood), and what those of all vehicles say together: a distribution over
     candidates by expectation maximisation (Laird 1978), to which "any scatter" adds as much as one vehicle.
+    The p-value expects more scatter, and that it lasts: so its level holds with few logs.
 
     Args:
         all_series: of vehicles with three logs or more, over some time.
@@ -81,8 +83,9 @@ def trends(all_series: Sequence[Series]) -> list[Trend]:
     if not all_series:
         return []
     fits = [_lines(series) for series in all_series]
-    weights = _weights(np.array([fit.likelihood for fit in fits]))
-    return [_averaged(fit, weight) for fit, weight in zip(fits, weights, strict=True)]
+    likelihoods = np.array([fit.likelihood for fit in fits])
+    likely, guarded = _weights(likelihoods, _even()), _weights(likelihoods, _guarded())
+    return [_averaged(*each) for each in zip(fits, likely, guarded, strict=True)]
 
 
 def walks(all_series: Sequence[Series]) -> list[Walk]:
@@ -97,7 +100,7 @@ def walks(all_series: Sequence[Series]) -> list[Walk]:
     if not all_series:
         return []
     found = [_filtered(series) for series in all_series]
-    shared = _shared(np.array([each.likelihood[0] for each in found]))
+    shared = _shared(np.array([each.likelihood[0] for each in found]), _even())
     return [_walk(*each) for each in zip(all_series, found, shared, strict=True)]
 
 
@@ -114,6 +117,23 @@ def _candidates() -> tuple[Floats, Floats]:
     size, kept = (axis.ravel() for axis in np.meshgrid(_SIZES, np.array(_KEPT), indexing="ij"))
     there = (size > 0.0) | (kept == 0.0)
     return size[there], kept[there]
+
+
+def _even() -> Floats:
+    """Return the chance of each scatter [C] before anything is known: all that is there is as likely."""
+    some = _candidates()[0] > 0.0
+    return np.where(some, (1.0 - _NONE) / some.sum(), _NONE)
+
+
+def _guarded() -> Floats:
+    """Return the chance of each scatter [C] that holds a test's level where few logs do not show the scatter.
+
+    Its standard deviation is as likely to be small as large (Gelman 2006), and what lasts weighs by its
+    spectral density at frequency zero, since it makes false trends.
+    """
+    size, kept = _candidates()
+    weight = np.sqrt(size) / (1.0 - kept) ** 2
+    return np.where(size > 0.0, (1.0 - _NONE_GUARDED) * weight / weight.sum(), _NONE_GUARDED)
 
 
 def _lines(series: Series) -> _Lines:
@@ -145,10 +165,8 @@ def _lines(series: Series) -> _Lines:
     return _Lines(likelihood, slope * per_day, a / determinant * per_day**2, len(days) - 2)
 
 
-def _shared(likelihoods: Floats) -> Floats:
+def _shared(likelihoods: Floats, before: Floats) -> Floats:
     """Return the distribution of the scatter of vehicles like each one, by what the others say [V, C]."""
-    some = _candidates()[0] > 0.0
-    before = np.where(some, (1.0 - _NONE) / some.sum(), _NONE)
     relative = np.exp(likelihoods - likelihoods.max(axis=1, keepdims=True))
     shared, weights = before, relative
     for _ in range(_ROUNDS):
@@ -158,18 +176,18 @@ def _shared(likelihoods: Floats) -> Floats:
     return np.asarray((_ALONE * before + weights.sum(axis=0) - weights) / (_ALONE + len(weights) - 1))
 
 
-def _weights(likelihoods: Floats) -> Floats:
+def _weights(likelihoods: Floats, before: Floats) -> Floats:
     """Return the weights of the candidates [V, C] for each vehicle."""
-    weights = np.exp(likelihoods - likelihoods.max(axis=1, keepdims=True)) * _shared(likelihoods)
+    weights = np.exp(likelihoods - likelihoods.max(axis=1, keepdims=True)) * _shared(likelihoods, before)
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
-def _averaged(fit: _Lines, weight: Floats) -> Trend:
+def _averaged(fit: _Lines, weight: Floats, guarded: Floats) -> Trend:
     slope = float(weight @ fit.slope)
     variance = float(weight @ (fit.variance + (fit.slope - slope) ** 2))
     z = np.abs(fit.slope) / np.sqrt(fit.variance)
     chance = sum(
-        float(w) * math.erfc(each / math.sqrt(2.0)) for w, each in zip(weight, z, strict=True) if w > 0
+        float(w) * math.erfc(each / math.sqrt(2.0)) for w, each in zip(guarded, z, strict=True) if w > 0
     )
     return Trend(slope, math.sqrt(variance), min(1.0, chance))
 

@@ -24,7 +24,7 @@ STUDENT_DOF = 4.0  # of robots of a type, against one odd one
 FEWEST_LOGS = 4  # of a vehicle, for its drift
 TREND = 0.75  # weight of the trend's chance beside that of the random walk: most that wears, wears evenly
 DAY = 86400.0  # s
-FEWEST_OTHERS = 3  # vehicles that tell a course from what one of them does
+FEWEST_OTHERS = 2  # vehicles that tell a course from what one of them does
 _MOST_BINS = 12
 _ROUNDS = 5
 
@@ -215,9 +215,10 @@ def without_common_course(all_series: Sequence[Series]) -> list[Series]:
 
     The course is the median of the other vehicles about their levels, in bins of time with straight lines
     between. It is shrunk by how much of it is the vehicles' own scatter, so that a fleet without one loses
-    nothing; where too few others drove it is taken from the nearest times.
+    nothing; where too few others drove it is taken from the nearest times. What the others' logs say of
+    themselves adds to what those of the vehicle say; their further scatter is found as if it were its own.
     """
-    if len(all_series) <= FEWEST_OTHERS:
+    if len(all_series) <= FEWEST_OTHERS:  # wear of one cannot be told from a season
         return list(all_series)
     edges = _edges(all_series)
     return [
@@ -233,16 +234,16 @@ def _edges(all_series: Sequence[Series]) -> Floats:
 
 
 def _less(series: Series, others: Sequence[Series], edges: Floats) -> Series:
-    middles = 0.5 * (edges[1:] + edges[:-1])
     bins = [
-        np.clip(np.searchsorted(edges, other.days, side="right") - 1, 0, len(middles) - 1) for other in others
+        np.clip(np.searchsorted(edges, other.days, side="right") - 1, 0, len(edges) - 2) for other in others
     ]
-    course = np.zeros(len(middles))
-    kept = 0.0
+    at = _places(np.concatenate([other.days for other in others]), np.concatenate(bins), edges)
+    course = np.zeros(len(at))
+    kept, lost = 0.0, 0.0
     for _ in range(_ROUNDS):
-        binned = np.full((len(others), len(middles)), np.nan)
+        binned = np.full((len(others), len(at)), np.nan)
         for row, other, places in zip(binned, others, bins, strict=True):
-            left = other.values - np.interp(other.days, middles, course)
+            left = other.values - np.interp(other.days, at, course)
             about = other.values - np.average(left, weights=other.stds**-2.0)
             drives = np.bincount(places, minlength=len(row))
             np.divide(np.bincount(places, about, len(row)), drives, out=row, where=drives > 0)
@@ -252,11 +253,30 @@ def _less(series: Series, others: Sequence[Series], edges: Floats) -> Series:
             return series
         median = _median(binned[:, there], counts[there])
         spread = np.nanvar(binned[:, there], axis=0, ddof=1)
-        noise = float(np.mean(0.5 * np.pi * spread / counts[there]))
+        lost = float(np.mean(_of_median(counts[there])))
+        noise = float(np.mean(_of_median(counts[there]) * spread))
         seen = float(np.var(median))
         kept = max(0.0, 1.0 - noise / seen) if seen > 0.0 else 0.0
-        course = np.interp(middles, middles[there], median - median.mean())
-    return replace(series, values=series.values - kept * np.interp(series.days, middles, course))
+        course = np.interp(at, at[there], median - median.mean())
+    said = np.mean([np.mean(other.stds**2) * len(series.days) / len(other.days) for other in others])
+    return replace(
+        series,
+        values=series.values - kept * np.interp(series.days, at, course),
+        stds=np.sqrt(series.stds**2 + kept * lost * said),
+    )
+
+
+def _places(days: Floats, bins: NDArray[np.int64], edges: Floats) -> Floats:
+    """Return the mean time of the logs in each bin, of one without logs its middle."""
+    drives = np.bincount(bins, minlength=len(edges) - 1)
+    places = 0.5 * (edges[1:] + edges[:-1])
+    np.divide(np.bincount(bins, days, len(places)), drives, out=places, where=drives > 0)
+    return places
+
+
+def _of_median(counts: NDArray[np.int64]) -> Floats:
+    """Return the variance of the median of so many normal numbers, within 2 %, in units of theirs."""
+    return np.asarray(0.5 * np.pi / (counts + np.where(counts % 2 == 1, 0.5, 1.2)))
 
 
 def _median(columns: Floats, counts: NDArray[np.int64]) -> Floats:
