@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -106,20 +106,14 @@ def calibrate_by(
     learned = learn(windows)
     found = found_contradictions(learned, windows.drive, (log, input_name, settings))
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
-    mounts = _mounts(learned, log, settings)
-    gyro = gyro_clock(log.runs)
-    placed = {mount.name for mount in mounts}
+    mounts = learned_mounts(learned, log, settings)
     return Calibration(
         model_of(content, log, found, mounts),
         judged.verdict,
         learned.history,
         (*log.left_out, *unused_runs(log, input_name), *windows.left_out),
         (
-            *log.notes,
-            *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.judged),
-            *(source.sentence(placed=source.name in placed) for source in learned.sources),
-            *(said for mount in mounts if (said := mount.untold())),
-            *((gyro.sentence(),) if gyro is not None and gyro.sentence() else ()),
+            *notes_of(learned, log, found, mounts),
             *unused_measurements(log, settings, smooth=smooth),
             *unused_wheels(log, settings, learned.kept, input_name),
         ),
@@ -141,7 +135,7 @@ def model_of_log(
     windows = learning_windows(prepare_run(log, input_name), input_name, settings)
     found = found_contradictions(learned, windows.drive, (log, input_name, settings), start)
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
-    return model_of(content, log, found, _mounts(learned, log, settings)), judged.judgement
+    return model_of(content, log, found, learned_mounts(learned, log, settings)), judged.judgement
 
 
 def found_contradictions(
@@ -259,7 +253,22 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     )
 
 
-def _mounts(learned: Learned, log: Log, settings: Settings) -> tuple[Mount, ...]:
+def notes_of(
+    learned: Learned, log: Log, found: Iterable[Finding], mounts: Iterable[Mount]
+) -> tuple[str, ...]:
+    """Return what is said of a log beside its verdict, with its further sources, gyro and what was found."""
+    gyro = gyro_clock(log.runs)
+    placed = {mount.name for mount in mounts}
+    return (
+        *log.notes,
+        *(" ".join((f"{each.sentence}.", *each.advice)) for each in found if not each.judged),
+        *(source.sentence(placed=source.name in placed) for source in learned.sources),
+        *(said for mount in mounts if (said := mount.untold())),
+        *((gyro.sentence(),) if gyro is not None and gyro.sentence() else ()),
+    )
+
+
+def learned_mounts(learned: Learned, log: Log, settings: Settings) -> tuple[Mount, ...]:
     """Where sources of poses sit beside the first, where some were learned from."""
     return mounts_of(log.runs, settings.sensor_extrinsics.pose) if learned.sources else ()
 

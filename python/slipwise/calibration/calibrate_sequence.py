@@ -10,8 +10,10 @@ from slipwise.calibration.calibrate import (
     JUDGING_HORIZONS,
     found_contradictions,
     judged_content,
+    learned_mounts,
     learning_windows,
     model_of,
+    notes_of,
     refuse_empty,
 )
 from slipwise.calibration.learned_log import Keep
@@ -85,15 +87,17 @@ def calibrate_sequence(
     found = found_contradictions(learned, windows.drive, (log, input_name, settings), start)
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     kept = learned.kept.structure, learned.kept.motion
-    model = model_of(with_memory(content, sequence.learner, kept, start), log, found)
+    mounts = learned_mounts(learned, log, settings)
+    model = model_of(with_memory(content, sequence.learner, kept, start), log, found, mounts)
     calibration = Calibration(
         model,
         judged.verdict,
         learned.history,
         (*log.left_out, *unused_runs(log, input_name), *windows.left_out),
-        log.notes,
+        notes_of(learned, log, found, mounts),
         None,
         learned.predictions,
+        mounts=mounts,
     )
     return calibration, sequence
 

@@ -15,6 +15,7 @@ from sample_noise import lasting_noise
 from sample_sources import Source, run_of, seen_by, true_run
 
 from slipwise.calibration import Calibration, calibrate
+from slipwise.calibration.calibrate_sequence import calibrate_sequence
 from slipwise.calibration.mount_windows import LATE, YAW, X, Y
 from slipwise.calibration.mounts import holding_mounts, mounts_of
 from slipwise.calibration.source_tables import PoseSourceTable
@@ -186,6 +187,17 @@ def test_a_model_keeps_mounts_and_says_which_sensor_was_moved(drives: list[Drive
     assert "[[pose_sources]]" in export_model(kept, "mounts", name="m", force=True).text
     (found,) = [row for row in differences(*models) if row.different]
     assert found.name.startswith("sensor_x(rtk")
+
+
+def test_a_memory_of_surfaces_loses_no_mount(drives: list[Drive]) -> None:
+    run, random = drives[0]
+    rtk = seen_by(run.poses, Source(std=(0.02, 0.01), late=LATER, sensor=(*ARM, TURNED)), deepcopy(random))
+    log = Log((run_of(run, seen_by(run.poses, Source(), deepcopy(random)), rtk=rtk),))
+    found, _ = calibrate_sequence([log], input="wheel")
+    plain = calibrate(log, input="wheel")
+    assert [each.name for each in found.mounts] == ["rtk"]
+    assert mounts_in(found.model) == mounts_in(plain.model)
+    assert found.notes == plain.notes
 
 
 def test_the_place_of_a_source_is_learned_unless_the_settings_give_one() -> None:

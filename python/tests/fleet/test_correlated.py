@@ -92,8 +92,8 @@ def test_a_fleet_without_wear_seldom_alarms(scatter: str) -> None:
 @pytest.mark.parametrize("scatter", KINDS)
 def test_wear_is_seen_in_at_most_a_twentieth_of_small_fleets_without_it(scatter: str) -> None:
     random = np.random.default_rng(5)
-    alarmed = false_wear(random, SIGMA, Fleet(3, 12, scatter, BEYOND), 500)
-    assert alarmed <= 0.062  # 0.05 asked, 0.044 measured at most; 1.2 standard errors of 500 fleets
+    alarmed = false_wear(random, SIGMA, Fleet(3, 12, scatter, BEYOND), 250)
+    assert alarmed <= 0.07  # 0.05 asked, 0.044 measured at most; 1.4 standard errors of 250 fleets
 
 
 def test_a_season_is_taken_out_of_three_robots_and_its_doubt_is_counted() -> None:
