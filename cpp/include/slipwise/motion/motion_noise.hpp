@@ -17,7 +17,7 @@ struct MotionNoise {
   double pose_std_xy = 0.0;            ///< of each measured pose, per axis [m]
   double pose_std_yaw = 0.0;           ///< of each measured pose [rad]
 };
-inline SLIPWISE_TUNING(kTurnRadius, 0.9);      ///< a turn of 1 rad slips the wheels like this distance [m]
+inline SLIPWISE_TUNING(kTurnRadius, 0.3);      ///< a turn of 1 rad slips the wheels like this distance [m]
 inline SLIPWISE_TUNING(kStraightRadius, 5.0);  ///< driving this far disturbs the heading like a turn of 1 rad [m]
 
 }  // namespace slipwise
