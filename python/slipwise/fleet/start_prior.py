@@ -32,6 +32,9 @@ Floats = NDArray[np.float64]
 SPREAD = 0.03
 LEFT = 0.05  # of a log's prior, which is taken out of what it says; the rest keeps its covariance finite
 FEWEST_STUDENT = 4  # robots, from which on one of them may count less
+#: Of fewer, by their number, the variance itself is not known: the square of what their Student t's 90 %
+#: interval is over a normal one, with as many degrees of freedom as robots and the guess of them have.
+FEW = {2: 2.05, 3: 1.68}
 JOINT = "joint"  # the way to explain motion that every log has
 KnownLog = tuple[str, LogKnowledge]  # with its vehicle
 
@@ -156,8 +159,8 @@ def _by_vehicle(said: _Said) -> tuple[Floats, Floats, Floats]:
 
 
 def _variance(between: Floats, count: int) -> Floats:
-    """Return the covariance of what was drawn, which a Student t's scale matrix is only a part of."""
-    return between * (STUDENT_DOF / (STUDENT_DOF - 2.0) if count >= FEWEST_STUDENT else 1.0)
+    """Return the covariance of the next that is drawn, which a Student t's scale matrix is only a part of."""
+    return between * FEW.get(count, STUDENT_DOF / (STUDENT_DOF - 2.0))
 
 
 def _population(estimates: Floats, covariances: Floats) -> FleetPrior:

@@ -41,6 +41,19 @@ def test_intervals_hold_the_next_robot() -> None:
     assert np.mean(held) == pytest.approx(0.9, abs=0.085)  # three standard deviations of 120 draws
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("robots", [2, 3, 5])
+def test_intervals_of_few_robots_hold_the_next_one(robots: int) -> None:
+    """Robots differ by a fifth of a log's prior, about as the guess of their spread says."""
+    random, held = np.random.default_rng(robots), []
+    for _ in range(150):
+        truth = random.normal(-0.2, 0.06, (robots + 1, 2))
+        prior = new_robot([(str(k), learned(each, 0.02, random)) for k, each in enumerate(truth[:-1])])
+        assert prior is not None
+        held.append(np.abs(prior[0] - truth[-1]) <= 1.645 * np.sqrt(np.diag(prior[1])))
+    assert 0.85 <= np.mean(held) <= 0.95
+
+
 def test_what_no_robot_shows_is_no_surer_than_before_any_log() -> None:
     blind = LearnedNormal(np.zeros(1), np.array([[0.09]]), np.zeros(1), np.array([0.3]))
     prior = new_robot([("a", blind), ("b", blind)])
