@@ -6,6 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
+from slipwise.logs.findings.finding import RefusedLogError
+from slipwise.logs.findings.readings import SteeringInDegrees
 from slipwise.logs.log import Floats
 
 
@@ -32,6 +34,12 @@ def twist_from_steering(
 
     The speed is in m/s once it is multiplied by `speed_factor`, and returned as it is given. Where the car
     stands with turned wheels, v is a nanometre a second, and omega over it says how far.
+
+    Raises:
+        RefusedLogError: the angles are in degrees.
     """
+    found = SteeringInDegrees.by(steer)
+    if found is not None:
+        raise RefusedLogError(found)
     twists: Floats = _core.Ackermann(wheelbase).twists(v, steer)
     return np.ascontiguousarray(twists[:, 0]), np.ascontiguousarray(speed_factor * twists[:, 1])

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from slipwise.logs.findings.finding import RefusedLogError
 from slipwise.logs.kinematics import omega_from_curvature, twist_from_steering, twist_from_wheels
 
 
@@ -40,3 +41,11 @@ def test_a_steered_car_that_stands_keeps_how_its_wheels_are_turned() -> None:
     assert omega[0] / v[0] == pytest.approx(np.tan(0.3) / 2.5)
     assert (v[1], omega[1]) == (0.0, 0.0)
     assert not np.isfinite(omega[2])
+
+
+def test_angles_in_degrees_are_refused_and_sharp_ones_are_not() -> None:
+    v, steer = np.full(100, 4.0), 0.35 * np.sin(np.arange(100.0))
+    with pytest.raises(RefusedLogError, match=r"look like degrees \(up to 20\.1: .*convert them to radians"):
+        twist_from_steering(v, np.degrees(steer), wheelbase=2.5, speed_factor=1.0)
+    for angles in (4.0 * steer, np.where(np.arange(100) % 20 == 0, 20.0, steer)):  # sharp, with a few spikes
+        twist_from_steering(v, angles, wheelbase=2.5, speed_factor=1.0)

@@ -10,6 +10,7 @@ from slipwise.logs.log import Floats
 
 SLOWEST = 10.0  # s between poses
 FEWEST_STEPS = 20  # steps; with fewer no such judgement is made
+_QUARTER, _QUARTER_DEGREES = 0.5 * np.pi, 90.0  # of a turn
 
 
 class NotInSeconds(Check):
@@ -57,6 +58,28 @@ class TiltInDegrees(Check):
         )
 
 
+class SteeringInDegrees(Check):
+    """Steering angles in degrees."""
+
+    kind, family = "steering-in-degrees", "signs and units"
+    means = "steering angles are in degrees"
+    shows = "a tenth of them is beyond a quarter turn as radians, and none as degrees"
+    cure = "convert `cmd_steer` to radians"
+
+    @classmethod
+    def by(cls, angles: Floats) -> Finding | None:
+        """Say it of steering angles, NaN where there is none."""
+        sizes = np.abs(angles[np.isfinite(angles)])
+        if len(sizes) < FEWEST_STEPS or np.quantile(sizes, 0.9) <= _QUARTER or sizes.max() > _QUARTER_DEGREES:
+            return None
+        largest = float(sizes.max())
+        return cls.found(
+            f"steering angles look like degrees (up to {largest:.3g}: as radians wheels would turn round)",
+            "convert them to radians",
+            evidence=largest,
+        )
+
+
 class TiltedSensor(Check):
     """A sensor of roll and pitch on its side or upside down."""
 
@@ -71,4 +94,10 @@ class TiltedSensor(Check):
         return cls.found(sentence, "Correct the static transform from base_link to the sensor.")
 
 
-READINGS: tuple[Check, ...] = (NotInSeconds(), AbsurdSpeeds(), TiltInDegrees(), TiltedSensor())
+READINGS: tuple[Check, ...] = (
+    NotInSeconds(),
+    AbsurdSpeeds(),
+    TiltInDegrees(),
+    SteeringInDegrees(),
+    TiltedSensor(),
+)
