@@ -53,7 +53,10 @@ class FilteredPoses(Check):
     """Poses that follow the wheels' slips at once, and are corrected later."""
 
     kind, family = "filtered-poses", "poses"
-    hidden_by = ("two-sources", "repeated-wheels", "course-heading", "heading-jump", "unrelated")
+    hidden_by = (
+        *("two-sources", "repeated-wheels", "course-heading", "heading-jump"),
+        *("unrelated", "implausible", "towed-poses"),
+    )
     means = "the poses are of a filter that takes in the wheels' odometry and is corrected slowly"
     shows = "over a second they follow the inputs by another share (2 %) than in the long run, as filters do"
     cure = "record what the filter is corrected with: the poses of the lidar, the receiver or the localiser"
