@@ -101,11 +101,12 @@ def fit(columns: Numbers, measured: Numbers) -> tuple[float, Numbers]:
     """Fit the sum of columns [G, C] that is nearest to what was measured, [G].
 
     Returns:
-        the part of the squares that is left, but for the largest, and the factors [C].
+        the part of the squares that is left, but for the largest, and the factors [C]; 0 of nothing.
     """
     factors = np.linalg.lstsq(columns, measured, rcond=None)[0]
     squares = np.sort(np.abs(measured - columns @ factors) ** 2)[: int(np.ceil(_KEPT * len(measured)))]
-    return float(squares.sum() / (np.abs(measured) ** 2).sum()), factors
+    size = float((np.abs(measured) ** 2).sum())
+    return float(squares.sum()) / size if size > 0.0 else 0.0, factors
 
 
 def turns(drives: Sequence[DrivenSteps]) -> Floats:
