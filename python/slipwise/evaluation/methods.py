@@ -135,7 +135,7 @@ def learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
 def _driven_by(model: Model, contest: Contest) -> tuple[WindowSet, ...]:
     """Return the targets; throttle and steering go through the model's curves, not those learned meanwhile.
 
-    Where the settings say nothing else, poses are of a sensor where the model was told that it sits.
+    Where the settings say nothing else, the pose sensor sits where the settings of the model say.
 
     Raises:
         SettingsError: the log has no throttle and steering.

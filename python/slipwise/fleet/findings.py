@@ -218,7 +218,7 @@ def without_common_course(all_series: Sequence[Series]) -> list[Series]:
     nothing; where too few others drove it is taken from the nearest times. What the others' logs say of
     themselves adds to what those of the vehicle say; their further scatter is found as if it were its own.
     """
-    if len(all_series) <= FEWEST_OTHERS:  # wear of one cannot be told from a season
+    if len(all_series) <= FEWEST_OTHERS:  # wear of one looks like a season
         return list(all_series)
     edges = _edges(all_series)
     return [

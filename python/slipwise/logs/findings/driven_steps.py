@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.logs.findings.pose_streams import inputs_of
+from slipwise.logs.findings.seen import WholeLog
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Bools, Floats, Inputs, Poses
 
@@ -97,16 +99,22 @@ def lagged(steps: Numbers, lag: float) -> Numbers:
     return np.convolve(steps, kernel / kernel.sum())[: len(steps)]
 
 
+def driven_steps(whole: WholeLog, name: str) -> list[DrivenSteps]:
+    """Cut all runs of a log that share enough with their inputs of this kind, "command" or "wheel"."""
+    pairs = [(inputs_of(run, name), run.poses.as_measured) for run in whole.log.runs]
+    cut = [DrivenSteps.of(i, p, whole.unknown_after) for i, p in pairs if i is not None and len(p) > 1]
+    return [each for each in cut if each is not None]
+
+
 def fit(columns: Numbers, measured: Numbers) -> tuple[float, Numbers]:
     """Fit the sum of columns [G, C] that is nearest to what was measured, [G].
 
     Returns:
-        the part of the squares that is left, but for the largest, and the factors [C]; 0 of nothing.
+        the sum of the squares that is left, but for the largest, and the factors [C].
     """
     factors = np.linalg.lstsq(columns, measured, rcond=None)[0]
     squares = np.sort(np.abs(measured - columns @ factors) ** 2)[: int(np.ceil(_KEPT * len(measured)))]
-    size = float((np.abs(measured) ** 2).sum())
-    return float(squares.sum()) / size if size > 0.0 else 0.0, factors
+    return float(squares.sum()), factors
 
 
 def turns(drives: Sequence[DrivenSteps]) -> Floats:
@@ -120,7 +128,7 @@ def left_by_body(
     ways: Callable[[DrivenSteps, float], Sequence[Numbers]],
     *also: Numbers,
 ) -> float:
-    """Return the part of what was measured, [G], that is left by the best body that is late.
+    """Return the sum of the squares of what was measured, [G], that is left by the best body that is late.
 
     Args:
         drives: the runs, with at least one chosen window.

@@ -17,6 +17,7 @@ import numpy as np
 from slipwise.logs.findings.driven_steps import (
     DrivenSteps,
     Numbers,
+    driven_steps,
     fit,
     lagged,
     left_by_body,
@@ -24,7 +25,7 @@ from slipwise.logs.findings.driven_steps import (
     ways_to_turn,
 )
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.findings.pose_streams import inputs_of, told_by
+from slipwise.logs.findings.pose_streams import told_by
 from slipwise.logs.findings.seen import WORDS, WholeLog
 from slipwise.logs.log import has_course
 
@@ -44,7 +45,7 @@ _DELAYS = (0.0, 0.2, 0.4)  # [s] by which poses are late
 class _Filter:
     """The filter that leaves least of the motion."""
 
-    left: float  # part of the squares
+    left: float  # sum of squares
     after: float  # [s] time constant of its corrections
     arrives: float  # of what the inputs say, in the long run
 
@@ -64,9 +65,7 @@ class FilteredPoses(Check):
     def look_at(self, whole: WholeLog) -> Finding | None:
         """Compare turns, and where there are wheels ways, with those of bodies and of such filters."""
         name = told_by(whole)
-        pairs = [(inputs_of(run, name), run.poses.as_measured) for run in whole.log.runs]
-        cut = [DrivenSteps.of(i, p, whole.unknown_after) for i, p in pairs if i is not None and len(p) > 1]
-        drives = [each for each in cut if each is not None and each.chosen.any()]
+        drives = [each for each in driven_steps(whole, name) if each.chosen.any()]
         if sum(int(each.chosen.sum()) for each in drives) < _ENOUGH:
             return None
         course = has_course(whole.log.runs)
@@ -128,7 +127,7 @@ class _Motion:
         return float(fit(np.column_stack((self._said(), *self.also)), self.measured)[1][0].real)
 
     def left_by_body(self) -> float:
-        """Return the part of the squares that the best body leaves."""
+        """Return the sum of squares that the best body leaves."""
         return left_by_body(self.drives, self.measured, self.ways, *self.also)
 
     def best_filter(self, commanded: bool) -> _Filter:
@@ -144,10 +143,8 @@ class _Motion:
     def _filter(self, columns: Sequence[tuple[Numbers, Numbers]], after: float, delay: float) -> _Filter:
         rows = [each.between(of_run, delay) for each, of_run in zip(self.drives, columns, strict=True)]
         at_once, later = np.concatenate(rows).T
-        rest = self.measured - at_once
-        left, factors = fit(np.column_stack((later, *self.also)), rest)
-        size = float((np.abs(rest) ** 2).sum() / (np.abs(self.measured) ** 2).sum())
-        return _Filter(left * size, after, 1.0 + float(factors[0].real))
+        left, factors = fit(np.column_stack((later, *self.also)), self.measured - at_once)
+        return _Filter(left, after, 1.0 + float(factors[0].real))
 
     def _said(self) -> Numbers:
         rows = [each.between((steps,)) for each, steps in zip(self.drives, self.steps, strict=True)]

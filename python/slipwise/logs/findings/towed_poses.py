@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from slipwise.logs.findings.driven_steps import left_by_body, turns, ways_to_turn
+from slipwise.logs.findings.driven_steps import driven_steps, left_by_body, turns, ways_to_turn
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.findings.pose_streams import inputs_of, told_by
+from slipwise.logs.findings.pose_streams import told_by
 from slipwise.logs.findings.seen import WholeLog
-from slipwise.logs.findings.towing import left_by_trailer, towing
+from slipwise.logs.findings.towing import after_a_way, left_by_trailer
 from slipwise.logs.log import has_course
 
 _ENOUGH = 30  # windows of 1 s in which a trailer would follow,
@@ -31,17 +31,19 @@ class TowedPoses(Check):
         name = told_by(whole)
         if has_course(whole.log.runs):
             return None
-        pairs = [(inputs_of(run, name), run.poses.as_measured) for run in whole.log.runs]
-        cut = [towing(i, p, whole.unknown_after) for i, p in pairs if i is not None and len(p) > 1]
-        drives = [each for each in cut if each is not None]
-        measured = sum(int(each.chosen.sum()) for each in drives)
-        if measured < _ENOUGH or float((turns(drives) ** 2).sum()) < _TURNED:
+        cut = [after_a_way(steps) for steps in driven_steps(whole, name)]
+        drives = [each for each in cut if each.chosen.any()]
+        if sum(int(each.chosen.sum()) for each in drives) < _ENOUGH:
             return None
-        body = left_by_body(drives, turns(drives), ways_to_turn)
-        if body < _UNEXPLAINED:
+        measured = turns(drives)
+        turned = float(measured @ measured)
+        if turned < _TURNED:
+            return None
+        body = left_by_body(drives, measured, ways_to_turn)
+        if body < _UNEXPLAINED * turned:
             return None
         trailer, length = left_by_trailer(drives, commanded=name == "command")
-        if trailer > _FEW or body < _TIMES * trailer:
+        if trailer > _FEW * turned or body < _TIMES * trailer:
             return None
         return self.found(
             f"the poses turn as a trailer does that the robot tows about {length:.1f} m behind it: the best "

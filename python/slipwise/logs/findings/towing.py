@@ -11,7 +11,6 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.logs.findings.driven_steps import DrivenSteps, fit, lagged, turns
-from slipwise.logs.log import Inputs, Poses
 
 _PARTS = 2  # of a step, in each of which a trailer follows
 _BACK = -1e-3  # m in a step; a trailer that is pushed folds
@@ -25,27 +24,25 @@ _TRAILERS = np.array(list(product(_LENGTHS, _TURNS, _BEHIND)))
 _SCALE = (0.65, 1.5)  # of the turns that a trailer should make; farther off it is none
 
 
-def towing(inputs: Inputs, poses: Poses, unknown_after: float) -> DrivenSteps | None:
-    """Choose the windows of a run that come after a way on which a trailer follows; None where none do."""
-    steps = DrivenSteps.of(inputs, poses, unknown_after)
-    if steps is None:
-        return None
+def after_a_way(steps: DrivenSteps) -> DrivenSteps:
+    """Choose the windows of a run that come after a way on which a trailer follows."""
     way = np.cumsum(np.where(steps.forward > 0.0, steps.forward, 0.0))
     lost = (steps.forward < _BACK) | ~steps.known
     since = way - np.maximum.accumulate(np.where(lost, way, 0.0))
     follows = np.append(since, since[-1:]) > _SETTLED
     at = np.clip(np.searchsorted(steps.t, steps.stop), 0, len(steps.t) - 1)
-    return replace(steps, chosen=follows[at]) if follows[at].any() else None
+    return replace(steps, chosen=follows[at])
 
 
 def left_by_trailer(drives: Sequence[DrivenSteps], *, commanded: bool) -> tuple[float, float]:
-    """Return the part of the turns that is left by the best trailer, and how long [m] that is.
+    """Return the sum of the squares of turns that is left by the best trailer, and how long [m] that is.
 
     Args:
         drives: with at least one chosen window.
         commanded: the inputs are commands, which the robot that tows may follow late.
     """
-    measured, best = turns(drives), (1.0, 0.0)
+    measured = turns(drives)
+    best = (float(measured @ measured), 0.0)
     for lag in _LAGS_OF_DRIVES if commanded else _LAGS_OF_DRIVES[:1]:
         towed = [
             _core.towed_turns(

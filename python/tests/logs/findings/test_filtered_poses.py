@@ -81,5 +81,5 @@ def test_robots_that_slip_or_turn_late_are_none() -> None:
             assert found_in(log) is None
             without = Log(runs=tuple(replace(run, wheels=None) for run in log.runs))
             assert found_in(without, "command") is None
-    wandering = replace(SKID_STEERED, seconds=300.0, disturbance=(0.2, 5.0))
-    assert found_in(sound_log(wandering)) is None
+    drifting = replace(SKID_STEERED, seconds=300.0, disturbance=(0.2, 5.0))
+    assert found_in(sound_log(drifting)) is None
