@@ -150,7 +150,7 @@ class LogFields:
     pose_clock_offset: float | str | None = _key(
         Kind.number_or_auto,
         "SECONDS",
-        "Added to the stamps of the poses; auto finds it from the motion that inputs and poses share.",
+        "Added to the stamps of all poses; auto finds it from the motion that inputs and poses share.",
         example='"auto"',
         key=False,
     )

@@ -59,13 +59,12 @@ def with_poses(log: Log, path: Path, options: LogOptions) -> Log:
 def with_other_poses(log: Log, path: Path, options: LogOptions) -> Log:
     """Return the log with the poses of a further file as a source beside its own, named by the file's stem.
 
-    Its offset is found where `pose_clock_offset` is "auto", else none is added; the rest is learned.
+    An offset that is given is that of all files; where `pose_clock_offset` is "auto", each has its own.
 
     Raises:
         LogError: the file cannot be read, does not overlap with the log, or the offset cannot be found.
     """
-    automatic = AUTO if options.pose_clock_offset == AUTO else None
-    beside = with_poses(log, path, replace(options, pose_clock_offset=automatic))
+    beside = with_poses(log, path, options)
     first = "" if options.poses is None else options.poses.stem
     runs = tuple(
         replace(run, others={**run.others, path.stem: other.poses}, source=run.source or first)

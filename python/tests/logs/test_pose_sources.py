@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -136,6 +137,8 @@ def test_further_files_of_poses_are_sources_beside_the_first(tmp_path: Path) -> 
     assert (run.source, list(run.others)) == ("lidar", ["rtk"])
     assert (run.poses.y[0], run.others["rtk"].y[0]) == (0.0, 0.1)
     assert tmp_path / "rtk.csv" in options.files
+    (late,) = open_log(drive, options=replace(options, pose_clock_offset=0.3)).runs
+    assert (late.poses.t[0], late.others["rtk"].t[0]) == (0.3, 0.3)
     with pytest.raises(SettingsError, match="need a first one"):
         LogOptions(other_poses=(tmp_path / "rtk.csv",))
     with pytest.raises(SettingsError, match="have one name"):
