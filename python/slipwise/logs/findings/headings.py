@@ -60,7 +60,7 @@ class TurnedPoses(Check):
         return self.found(
             f"the poses move to the {side} of their heading where the {seen.words.name} drive straight on: "
             f"their heading is turned by {_degrees(angle)} deg",
-            f"Give --pose-yaw-offset {_offset(angle):.4f}, which turns the heading of every pose [rad].",
+            f"Give {_yaw_offset(angle)}, which turns the heading of every pose [rad].",
             evidence=math.degrees(angle),
         )
 
@@ -112,8 +112,8 @@ class BackwardPoses(Check):
         words, alone = seen.words, seen.other_driven.direction.real > 0.5
         mostly_forward = float(np.sum(seen.driven.forward)) > 0.0
         ways = ("forwards", "backwards") if mostly_forward else ("backwards", "forwards")
-        frame = f"If the pose sensor looks backwards, give --pose-yaw-offset {_offset(angle):.4f} [rad]."
-        sign = f"If the sign of {words.speed} is flipped, give {words.option} -1,1."
+        frame = f"If the pose sensor looks backwards, give {_yaw_offset(angle)} [rad]."
+        sign = f"If the sign of {words.speed} is flipped, give {words.scaled('-1,1')}."
         by_sign = alone or not mostly_forward
         likely = "the sign of the speed is flipped" if by_sign else "the heading is turned by 180 deg"
         return self.found(
@@ -141,7 +141,7 @@ class UnlikelySpeed(Check):
             return None
         units = likely_speeds(scale)
         factor = (
-            f"Convert it: {words.option} {scale:.2g},1 multiplies it by about the factor of its unit "
+            f"Convert it: {words.scaled(f'{scale:.2g},1')} multiplies it by about the factor of its unit "
             f"({scale:.2g},{scale:.2g} where the yaw rate is in that unit too)."
         )
         return self.found(
@@ -185,7 +185,7 @@ class OtherUnit(Check):
             f"the robot drives {100.0 * scale:.0f} % of what it is commanded, slowly as fast, and turns "
             f"{100.0 * turns.yaw_ratio:.0f} %: the commanded speed is in {name} ({100.0 * factor:.0f} % of "
             "m/s), or the drive has such a gain",
-            f"If it is in {name}, --command-scale {factor:.5g},1 converts it.",
+            f"If it is in {name}, {seen.words.scaled(f'{factor:.5g},1')} converts it.",
             evidence=scale,
         )
 
@@ -291,6 +291,10 @@ def _error(length: float, before: int, count: int) -> float:
 
 def _agree(driven: DrivenWindows) -> bool:
     return len(driven) >= _ENOUGH and abs(driven.direction) > _AGREE
+
+
+def _yaw_offset(angle: float) -> str:
+    return f"--pose-yaw-offset {_offset(angle):.4f} (plus one in force)"
 
 
 def _offset(angle: float) -> float:

@@ -159,26 +159,25 @@ def _units(a: Agreement, words: InputWords) -> tuple[str, str]:
 
 def _rates(a: Agreement, words: InputWords) -> tuple[str, str]:
     """Say how far yaw rates of the inputs, and their speeds with them, are off, and the option for that."""
-    option, inputs = words.option, words.name
+    inputs = words.name
     moved, turned = a.distance_ratio, a.yaw_ratio
     if a.distance_v > 0.6 and not _LEAST_TURN < moved < _MOST_TURN:
         units = likely_speeds(moved)
         what = f"poses move {moved:.2g} times as far and turn {turned:.2g} times as much as the {inputs} say"
+        both = f"multiplies both by the factor of the unit, about {moved:.2g}"
         return (
             f"{what}: they are not in m/s and rad/s" + (f", perhaps {units}" if units else ""),
-            f"convert them: {option} F,F multiplies both by the factor of the unit, about {moved:.2g}",
+            f"convert them: {words.scaled('F,F')} {both}",
         )
     units, factor = likely_turns(turned)
     what = f"poses turn {turned:.2g} times as much as omega of the {inputs} says"
     if _DEGREES_LOW < turned * _DEGREES < _DEGREES_HIGH:
         what = f"omega of the {inputs} looks like degrees per second (poses turn {turned:.3f} of it)"
-        return (
-            what,
-            f"convert it to rad/s: {option} 1,{1.0 / _DEGREES:.5f}; 1,{1.0 / 60.0:.5f} if it is in rad/min",
-        )
+        option = words.scaled(f"1,{1.0 / _DEGREES:.5f}")
+        return what, f"convert it to rad/s: {option}; 1,{1.0 / 60.0:.5f} if it is in rad/min"
     return (
         f"{what}: it is not in rad/s" + (f", perhaps {units}" if units else ""),
-        f"convert it: {option} 1,{factor:.4g} multiplies it",
+        f"convert it: {words.scaled(f'1,{factor:.4g}')} multiplies it",
     )
 
 
@@ -208,7 +207,7 @@ def _mirrored(a: Agreement, words: InputWords, *, alone: bool) -> tuple[str, str
     if a.turning <= ENOUGH_TURN or a.yaw_inputs >= -_TURN_TOGETHER:
         return _FINE
     swapped = "left and right are swapped, or " if words.input_name == "wheel" else ""
-    sign = f"{swapped}the sign of omega is flipped: give {words.option} 1,-1"
+    sign = f"{swapped}the sign of omega is flipped: give {words.scaled('1,-1')}"
     if alone:
         return f"poses turn against the {words.name}", sign
     frame = "check the sign of yaw: it is counter-clockwise"

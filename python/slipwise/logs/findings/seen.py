@@ -26,6 +26,10 @@ class InputWords:
     option: str  # that scales it
     drives: str  # why the robot should move
 
+    def scaled(self, factors: str) -> str:
+        """Return the option with factors that hold for a log as it was read, with those that were given."""
+        return f"{self.option} {factors} (times those in force)"
+
 
 WORDS = {
     "command": InputWords("command", "commands", "the commanded speed", "--command-scale", "it is commanded"),

@@ -151,8 +151,8 @@ class WheelSize(Check):
         return self.found(
             f"the poses move {scale:.2f} times as far as the wheels say: the wheels are {scale:.2f} times as "
             "large as was said, or they slip by as much",
-            f"Measure the wheels' radius and the ticks of a turn; --wheel-scale {scale:.2f},{scale:.2f} "
-            "cures a wrong size.",
+            "Measure the wheels' radius and the ticks of a turn; "
+            f"{seen.words.scaled(f'{scale:.2f},{scale:.2f}')} cures a wrong size.",
             evidence=scale,
         )
 

@@ -52,9 +52,9 @@ CONTRADICTORY: dict[str, tuple[Log, str, str, str]] = {  # log, input, kind, wha
         "backward-poses",
         "--command-scale -1,1",
     ),
-    "wheels flipped": (scaled(SOUND, "wheels", -1.0), "wheel", "backward-poses", "--wheel-scale -1,1"),
+    "wheels flipped": (scaled(SOUND, "wheels", -1.0), "wheel", "backward-poses", "--wheel-scale -1,1 (times"),
     "turned by 180": (turned(SOUND, np.pi), "wheel", "backward-poses", "--pose-yaw-offset 3.1416"),
-    "turned by 90": (turned(SOUND, 0.5 * np.pi), "wheel", "turned-poses", "--pose-yaw-offset -1.5708"),
+    "turned by 90": (turned(SOUND, 0.5 * np.pi), "wheel", "turned-poses", "--pose-yaw-offset -1.5708 (plus"),
     "turned by 40": (turned(SOUND, np.radians(40.0)), "wheel", "turned-poses", "--pose-yaw-offset -0."),
     "heading jumps": (turned(SOUND, np.pi, HALF), "command", "heading-jump", "two logs"),
     "no heading": (
