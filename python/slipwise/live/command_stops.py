@@ -27,15 +27,18 @@ class LiveCommandStops:
 
     Args:
         unknown_after: an input is unknown once it is older than this [s].
+        given: how long after a command that is not repeated it is said to end [s]; None: it is held.
     """
 
-    def __init__(self, unknown_after: float) -> None:
-        self._unknown_after, self._stops = unknown_after, CommandStops()
+    def __init__(self, unknown_after: float, given: float | None = None) -> None:
+        self._unknown_after, self._stops = unknown_after, CommandStops(given)
         self._commands: list[tuple[float, float, float, float]] = []
         self._poses: list[tuple[float, float, float, float, float]] = []
 
     def take_command(self, command: Command) -> None:
         """Take a command; one that is not later than the last says nothing."""
+        if command.ended and self._stops.given is not None:
+            return
         row = (command.t, command.v, command.vy, command.omega)
         if all(map(math.isfinite, row)) and (not self._commands or row[0] > self._commands[-1][0]):
             self._commands.append(row)

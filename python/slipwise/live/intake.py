@@ -54,8 +54,8 @@ class Intake:
         self._ends = CommandEnds(command_timeout, learner.settings.segment.unknown_after)
         self._learner, self._gates, self._said = learner, gates, said
         self._input = Command if input_name == "command" else Wheels
-        looks = input_name == "command" and command_timeout is None
-        self._stops = LiveCommandStops(learner.settings.segment.unknown_after) if looks else None
+        unknown_after = learner.settings.segment.unknown_after
+        self._stops = LiveCommandStops(unknown_after, command_timeout) if input_name == "command" else None
         self._pose_steps = PoseSteps()
         self._recent = RecentLog(input_name, learner.settings.segment.unknown_after)
         self._clock = ClockWatch()

@@ -35,6 +35,17 @@ def held_stamps(given: float, seconds: float, until: float, unknown_after: float
     return [at for k in range(1, max(count, 1)) if (at := given + step * k) < last - _core.SAME_STAMP]
 
 
+def ends_after(commands: Inputs) -> float | None:
+    """Return how long after a command that is not repeated a watchdog is said to end it [s], if one is."""
+    none = (commands.v == 0.0) & (commands.vy == 0.0) & (commands.omega == 0.0)
+    ends, sent = commands.t[commands.ends & none], commands.select(~commands.ends & ~none).t
+    if not len(ends):
+        return None
+    newest = np.searchsorted(sent, ends) - 1
+    first = np.flatnonzero(np.diff(newest, prepend=-1) > 0)
+    return float(np.median(ends[first] - sent[newest[first]])) if len(first) else None
+
+
 def with_ended_commands(log: Log, seconds: float | None, unknown_after: float = UNKNOWN_AFTER) -> Log:
     """Return the log with commands that end `seconds` after each that is not repeated, which is noted.
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from slipwise.logs.command_timeout import ends_after
 from slipwise.logs.findings.commanded_motion import CommandedMotion
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.log import Bools, Floats, Inputs, Ints, Poses
@@ -33,13 +34,19 @@ _SETTLED = 2.0  # s after the start of a piece; how the robot moved before it is
 _SILENCE = 0.3  # s without a command
 _BEFORE, _AFTER = 1.0, 2.5  # s around a silence; a robot that starts again shows its delay
 _ENOUGH = 3  # silences that are longer than the watchdog waits
-_ERRORS_LEFT = 0.6  # of the squared errors without a watchdog, those with one are less
+_ERRORS_LEFT = 0.6  # of the squared errors with what is said of a watchdog, those with another are less
+_ALIKE = 0.1  # of what the best takes away of them at most, one that holds its commands leaves
 
 
 class CommandStops:
-    """What robots do of a command at each age of it, and how far commands are apart: sums of all pieces."""
+    """What robots do of a command at each age of it, and how far commands are apart: sums of all pieces.
 
-    def __init__(self) -> None:
+    Args:
+        given: how long after a command that is not repeated it is said to end [s]; None: it is held.
+    """
+
+    def __init__(self, given: float | None = None) -> None:
+        self.given, self._held = given, False  # whether commands are known until a watchdog ends them
         count = int(_OLDEST / _AGE)
         self._given, self._done, self._pieces = np.zeros(count), np.zeros(count), np.zeros(count)
         self._gaps: Floats = np.empty(0)
@@ -49,6 +56,7 @@ class CommandStops:
 
     def add(self, commands: Inputs, poses: Poses) -> None:
         """Add commands and poses of one run, or of a piece of it, whose first command was the last before."""
+        self._held, commands = self._held or bool(commands.ends.any()), commands.sent
         self._gaps = np.concatenate((self._gaps, np.diff(commands.t)[_moves(commands)[:-1]]))[-_MOST_GAPS:]
         every = CommandedMotion.between(commands, poses)
         if every is None:
@@ -90,8 +98,12 @@ class CommandStops:
         after = np.flatnonzero(left[top:] < 0.5 * left[top])
         if not len(after) or float(np.median(left[top + after[0] :][-3:])) > _LEFT * left[top]:
             return None
+        return self._fit()
+
+    def _fit(self) -> float | None:
         if self._steps >= self._fitted_at + _NEW:  # what was found stays where nothing newer shows it
-            self._fitted, self._fitted_at = waited(self._newest, _SLOWEST) or self._fitted, self._steps
+            found = waited(self._newest, _SLOWEST, self.given)
+            self._fitted, self._fitted_at = found or self._fitted, self._steps
         return self._fitted
 
     def words(self, unknown_after: float) -> tuple[str, str] | None:
@@ -102,6 +114,8 @@ class CommandStops:
         """
         if len(self._gaps) < _FEWEST:
             return None
+        if self.given is not None:
+            return self._otherwise(self.given)
         usual, stop = float(np.median(self._gaps)), self.after()
         if stop is not None:
             rarely = stop < usual
@@ -112,7 +126,7 @@ class CommandStops:
                 + ("each" if rarely else "the last of them"),
                 f"Give --command-timeout {stop:.2g}: a command ends after so long where it is not repeated.",
             )
-        if usual <= unknown_after:
+        if usual <= unknown_after or self._held:
             return None
         advice = (
             f"Raise unknown_after under [segment] to {np.ceil(usual + 1.0):g} where the robot holds a "
@@ -120,11 +134,22 @@ class CommandStops:
         )
         return f"commands come every {usual:.2g} s and count as unknown after {unknown_after:g} s", advice
 
+    def _otherwise(self, given: float) -> tuple[str, str] | None:
+        """Say where the robot ends commands otherwise than is said."""
+        stop = self._fit()
+        if stop is None:
+            return None
+        said = f"commands are said to end {given:.2g} s after each that is not repeated, and the robot "
+        if np.isinf(stop):
+            return f"{said}goes on until the next", "Leave --command-timeout away."
+        return f"{said}stops about {stop:.2g} s after each", f"Give --command-timeout {stop:.2g}."
+
     def found(self, unknown_after: float) -> Finding | None:
         """Say where the robot stops although commands are taken to be held until `unknown_after` [s]."""
-        stop = self.after()
+        stop = self.after() if self.given is None else self._fit()
         sentence, advice = (stop is not None and self.words(unknown_after)) or ("", "")
-        return CommandTimeout.found(sentence, advice, evidence=stop) if sentence else None
+        evidence = self.given if stop == np.inf else stop
+        return CommandTimeout.found(sentence, advice, evidence=evidence) if sentence else None
 
 
 class CommandTimeout(Check):
@@ -134,7 +159,7 @@ class CommandTimeout(Check):
     of_input = True
     means = (
         "commands come rarely, or are silent for a while (a released stick): the robot's watchdog stops it "
-        "in between, or it holds them for long"
+        "in between, or it holds them for long; or its timeout is not the one given"
     )
     shows = "how long after a command that is not repeated the robot stops, and how far commands are apart"
     cure = "`--command-timeout S`; on the robot, send commands more often or raise `cmd_vel_timeout`"
@@ -148,13 +173,15 @@ class CommandTimeout(Check):
         stops = stops_of(pair for pair in pairs if len(pair[0]))
         spoilt = stops.found(whole.unknown_after)
         words = None if spoilt else stops.words(whole.unknown_after)
-        return spoilt if words is None else self.found(*words, evidence=stops.after(), spoils=False)
+        return spoilt if words is None else self.found(*words, spoils=False)
 
 
 def stops_of(pairs: Iterable[tuple[Inputs, Poses]]) -> CommandStops:
     """Return the sums of commands and poses of each run."""
-    stops = CommandStops()
-    for commands, poses in pairs:
+    every = list(pairs)
+    given = [seconds for commands, _ in every if (seconds := ends_after(commands)) is not None]
+    stops = CommandStops(given[0] if given else None)
+    for commands, poses in every:
         stops.add(commands, poses)
     return stops
 
@@ -168,12 +195,13 @@ def _moves(commands: Inputs) -> Bools:
     return np.asarray(np.abs(commands.v) > _SLOWEST) | (np.abs(commands.omega) > _SLOWEST)
 
 
-def waited(pieces: Sequence[CommandedMotion], slowest: float) -> float | None:
-    """Return how long [s] a command lasts that is not repeated; None where too little shows it.
+def waited(pieces: Sequence[CommandedMotion], slowest: float, given: float | None = None) -> float | None:
+    """Return how long [s] a command lasts that is not repeated; None where too little shows that.
 
     Args:
         pieces: of one robot.
         slowest: commands up to this [m/s or rad/s] are none to move.
+        given: how long it is said to last [s]; None: until the next.
     """
     errors, gaps = np.zeros(len(_WAITS)), [np.empty(0)]
     for channel in (0, 1):
@@ -191,9 +219,12 @@ def waited(pieces: Sequence[CommandedMotion], slowest: float) -> float | None:
             gaps.append(piece.gaps()[moves])
         explained = np.maximum(products, 0.0) ** 2 / np.where(squares > 0.0, squares, 1.0)
         errors += moved - explained.max(axis=(0, 2))
+    said = len(_WAITS) - 1 if given is None else int(np.argmin(np.abs(_WAITS - given)))
     best = int(np.argmin(errors))
-    silences = int(np.sum(np.concatenate(gaps) > _WAITS[best]))
-    return float(_WAITS[best]) if silences >= _ENOUGH and errors[best] < _ERRORS_LEFT * errors[-1] else None
+    if errors[-1] - errors[best] < _ALIKE * (errors[said] - errors[best]):
+        best = len(_WAITS) - 1
+    silences = int(np.sum(np.concatenate(gaps) > min(_WAITS[best], _WAITS[said])))
+    return float(_WAITS[best]) if silences >= _ENOUGH and errors[best] < _ERRORS_LEFT * errors[said] else None
 
 
 def has_silence(piece: CommandedMotion, slowest: float) -> bool:

@@ -90,6 +90,25 @@ def test_zeros_of_a_watchdog_that_was_given_are_no_second_source(tmp_path: Path)
     assert findings_of(open_log(path, command_timeout=0.5), "command") == ()
 
 
+@pytest.mark.parametrize("given", [0.2, 0.8])
+def test_a_wrong_timeout_is_named_with_the_right_one(tmp_path: Path, given: float) -> None:
+    (found,) = findings_of(open_log(rare_commands(tmp_path), command_timeout=given), "command")
+    assert found.sentence.startswith(f"commands are said to end {given:g} s after each")
+    assert found.advice[0].startswith("Give --command-timeout")
+    assert found.evidence == pytest.approx(0.5, abs=0.051)
+    assert found.spoils
+
+
+def test_a_timeout_of_a_robot_that_has_none_is_named() -> None:
+    commands, _ = drive(120.0, 120.0)
+    t = np.arange(0.0, 120.0, 0.1)
+    rest = np.zeros_like(t)
+    poses = Poses(t=t, x=0.5 * t, y=rest, yaw=rest, frame=np.zeros(len(t), np.int64))
+    log = with_ended_commands(Log(runs=(Run("a", commands, None, poses),)), WAITS)
+    named = [each for each in findings_of(log, "command") if each.kind == "command-timeout"]
+    assert [each.advice for each in named] == [("Leave --command-timeout away.",)]
+
+
 @pytest.mark.parametrize("ending", ["csv", "csv.gz", "parquet"])
 def test_zeros_of_a_watchdog_are_known_in_the_table_that_was_converted(tmp_path: Path, ending: str) -> None:
     log = open_log(rare_commands(tmp_path), command_timeout=0.5)
