@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from slipwise.cli.options import Json, optional
+from slipwise.cli.options import Force, Json, optional
 
 if TYPE_CHECKING:
     from slipwise.excitation import CommandSpace, Excitation, Knowledge, Lesson, Vehicle
@@ -42,13 +42,15 @@ def excite(
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="STEM", help="Files STEM.csv, STEM.mcap and STEM.html.")
     ] = Path("excite"),
+    force: Force = False,
     json: Json = None,
 ) -> int:
     """Find the held commands after which the robot's worst prediction is surest, inside an area.
 
     The drive ends where it began and does to the right what it does to the left. It was tried on 10 000
     robots with slip, lag and delay a quarter more varied than is likely: all stay inside. Nothing is sent to
-    any robot: a person plays the bag, with the stop button in hand, and records poses meanwhile.
+    any robot: a person plays the bag, with the stop button in hand, and records poses meanwhile. A model with
+    a bad verdict is refused with exit code 1 unless --force is given.
 
     \b
     Examples:
@@ -59,12 +61,14 @@ def excite(
     """  # noqa: D301
     from dataclasses import replace
 
+    from slipwise.cli.bad_verdict import say_refused
     from slipwise.cli.numbers import area_of
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.tables import show_files
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.excitation import ExcitationOptions, design_drive, lessons_of
+    from slipwise.models import load_model
     from slipwise.reporting.excitation_page import summary
 
     out = Output(json)
@@ -73,6 +77,10 @@ def excite(
     robot = _vehicle(vehicle)
     given = {"speed": speed, "yaw_rate": yaw_rate, "lateral": lateral}
     space, knowledge = _known((model, prior), robot, given)
+    learned = None if model is None else load_model(model).of_input("command")
+    if learned is not None and not learned.verdict.good and not force:
+        say_refused(out, learned, "excite")
+        return 1
     options = ExcitationOptions(area=area_of(area, "--area"), minutes=minutes, hold=hold, pause=pause)
     size = radius if radius is not None else robot.radius if robot is not None else options.radius
     options = replace(options, radius=size)
@@ -112,7 +120,7 @@ def _known(
     model, prior = files
     if model is not None and prior is not None:
         raise SettingsError("a model of this robot takes the place of its fleet's prior", where="--prior")
-    learned = None if model is None else load_model(model)
+    learned = None if model is None else load_model(model).of_input("command")
     if learned is not None:
         learned.refuse_throttle("designed drives")
     limits: dict[str, float] = {}

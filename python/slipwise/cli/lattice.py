@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from slipwise.cli.options import GRADE_HELP, Json, ModelFile, optional
+from slipwise.cli.options import GRADE_HELP, Force, Json, ModelFile, optional
 
 if TYPE_CHECKING:
     from slipwise.planning import CurvatureMap
@@ -26,7 +26,7 @@ def lattice(
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one primitive.")] = 6.0,
     grade: Annotated[str | None, optional("SLOPE,DOWNHILL", GRADE_HELP)] = None,
     curvature: Annotated[float | None, optional("1/M", "Largest of commands; by the model's range.")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Use a model with a bad verdict, too.")] = False,
+    force: Force = False,
     json: Json = None,
 ) -> int:
     """Write state-lattice primitives that the robot can really drive, for Nav2's Smac lattice planner.

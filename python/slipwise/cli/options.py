@@ -81,6 +81,7 @@ Folder = Annotated[
     Path | None, optional("DIR", "Write here, not into a new folder below `runs`.", "-o", "--output")
 ]
 ModelFile = Annotated[Path, typer.Argument(metavar="MODEL", show_default=False, help="A model file (.yaml).")]
+Force = Annotated[bool, typer.Option("--force", help="Use a model with a bad verdict, too.")]
 Labels = Annotated[
     list[str] | None,
     optional(

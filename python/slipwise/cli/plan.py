@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from slipwise.cli.options import GRADE_HELP, Json, optional
+from slipwise.cli.options import GRADE_HELP, Force, Json, optional
 
 if TYPE_CHECKING:
     from slipwise.reporting.plan_drawing import Plan
@@ -35,11 +35,13 @@ def plan(
             metavar="N", min=1, max=10**9, help="Larger maps are refused; each cell takes 40 bytes."
         ),
     ] = 25_000_000,
+    force: Force = False,
     json: Json = None,
 ) -> int:
     """Plan commands from one pose to another through a map, as the learned model says that the robot drives.
 
-    Limits of speed and yaw rate are those that the model was learned within.
+    Limits of speed and yaw rate are those that the model was learned within. A model with a bad verdict is
+    refused with exit code 1 unless --force is given.
 
     \b
     Examples:
@@ -47,6 +49,7 @@ def plan(
       slipwise plan --model model.yaml --map map.yaml --from 1,2,0 --to 8,5,1.57 --radius 0.8 -o dock
       slipwise plan --model model.yaml --map map.yaml --from 1,2,0 --to 8,5,1.57 --grade 8,-90
     """  # noqa: D301
+    from slipwise.cli.bad_verdict import say_refused
     from slipwise.cli.document import head
     from slipwise.cli.numbers import grade_of, pose_of
     from slipwise.cli.output import Output
@@ -62,6 +65,10 @@ def plan(
     learned, grid = load_model(model), load_map(map_file, most_cells=most_cells)
     files = {kind: output.with_name(f"{output.name}.{kind}") for kind in ("html", "csv")}
     refuse_unwritable(*files.values(), out.written_file, inputs=(model, map_file, image_of(map_file)))
+    learned = learned.of_input("command")
+    if not learned.verdict.good and not force:
+        say_refused(out, learned, "plan")
+        return 1
     begin, end = pose_of(start, "--from"), pose_of(goal, "--to")
     planner = RoutePlanner(
         learned,

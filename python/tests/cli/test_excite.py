@@ -16,6 +16,7 @@ from sample_models import make_model, named
 from slipwise import _core
 from slipwise.cli.excite import _known
 from slipwise.excitation import CommandSpace, prior_knowledge
+from slipwise.models import Model
 
 Slipwise = Callable[..., Result]
 QUICK = ("--area", "20x20", "--minutes", "0.4")
@@ -36,7 +37,7 @@ def test_excite_writes_table_bag_page_and_document(slipwise: Slipwise, folder: P
 
 @pytest.mark.slow
 def test_model_says_what_is_known_and_the_limits(slipwise: Slipwise, folder: Path) -> None:
-    make_model(named("edd-2", ang__w=-0.3)).save(folder / "model.yaml")
+    make_model(replace(named("edd-2", ang__w=-0.3), commands=True)).save(folder / "model.yaml")
     result = slipwise("excite", *QUICK, "--model", "model.yaml", "-o", "second", "--json", "-")
     assert (result.code, result.err) == (0, "")
     document = json.loads(result.out)
@@ -45,7 +46,8 @@ def test_model_says_what_is_known_and_the_limits(slipwise: Slipwise, folder: Pat
 
 @pytest.mark.slow
 def test_a_drive_in_reverse_that_the_model_never_saw_is_said(slipwise: Slipwise, folder: Path) -> None:
-    make_model(replace(named("edd-2", ang__w=-0.3), speed=(0.0, 1.0))).save(folder / "model.yaml")
+    forward = replace(named("edd-2", ang__w=-0.3), commands=True, speed=(0.0, 1.0))
+    make_model(forward).save(folder / "model.yaml")
     result = slipwise("excite", *QUICK, "--model", "model.yaml")
     assert result.code == 0
     assert re.search("It drives in reverse, down to -[0-9.]+ m/s, which the model has never seen", result.out)
@@ -54,7 +56,9 @@ def test_a_drive_in_reverse_that_the_model_never_saw_is_said(slipwise: Slipwise,
 def test_wrong_use_ends_with_code_2_and_says_why(
     slipwise: Slipwise, folder: Path, subtests: pytest.Subtests
 ) -> None:
+    make_model(named("edd-2", ang__w=-0.3)).save(folder / "wheel.yaml")
     for arguments, message in [
+        (("--model", "wheel.yaml"), "nothing from commands"),
         (("--vehicle", "unicycle"), "husky"),
         ((), "--vehicle"),
         (("--vehicle", "husky", "--area", "8"), "8x8"),
@@ -71,10 +75,19 @@ def test_wrong_use_ends_with_code_2_and_says_why(
             assert not list(folder.glob("excite.*"))
 
 
+def test_a_bad_verdict_is_refused(slipwise: Slipwise, folder: Path) -> None:
+    bad = replace(named("edd-2"), commands=True, good=False, sentence="It does not beat doing nothing.")
+    make_model(bad).save(folder / "model.yaml")
+    result = slipwise("excite", "--model", "model.yaml")
+    assert result.code == 1
+    assert "NOT GOOD ENOUGH. It does not beat doing nothing." in result.out
+    assert not list(folder.glob("excite.*"))
+
+
 def test_of_a_model_that_learned_nothing_the_prior_is_what_is_known(folder: Path) -> None:
     model = make_model(replace(named("edd-2"), basis=_core.Basis("none", [], [], []), values={}))
     assert not model.content.parameters
-    model.save(folder / "nothing.yaml")
+    Model(model.content.model_copy(update={"input": "command"})).save(folder / "nothing.yaml")
     given = {"speed": 1.0, "yaw_rate": 1.0}
     _, known = _known((folder / "nothing.yaml", None), None, given)
     assert known.names == prior_knowledge(CommandSpace(1.0, 1.0)).names

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from cli.conftest import Result
 from planning.planning_samples import learned_model, walled_map
+from sample_models import Made, make_model
 
+from slipwise import _core
 from slipwise.planning.pgm import write_pgm
 
 Slipwise = Callable[..., Result]
@@ -36,6 +38,17 @@ def test_plan_draws_the_swept_path_and_writes_the_commands(
     assert table.dtype.names == ("t", "cmd_v", "cmd_omega")
     assert table["cmd_v"][-1] == 0.0
     assert "The predicted end is" in result.out
+
+
+def test_a_bad_verdict_is_refused_unless_forced(
+    slipwise: Slipwise, folder: Path, arguments: list[object]
+) -> None:
+    bad = make_model(Made(_core.named_basis("edd-2"), commands=True, good=False, sentence="It guesses."))
+    bad.save(folder / "model.yaml")
+    result = slipwise(*arguments, "--from", START, "--to", GOAL)
+    assert (result.code, list(folder.glob("plan.*"))) == (1, [])
+    assert "NOT GOOD ENOUGH. It guesses." in result.out
+    assert slipwise(*arguments, "--from", START, "--to", GOAL, "--force").code == 0
 
 
 def test_plan_tells_machines(slipwise: Slipwise, arguments: list[object]) -> None:
