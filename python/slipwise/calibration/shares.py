@@ -92,16 +92,18 @@ class _Axis:
 
 def _axes(rows: Floats, sensor: PoseSensor) -> dict[str, _Axis]:
     duration = rows[:, DURATION]
+    places = {first: _places(rows, first) for first in (_COMMANDS, _WHEELS)}
+    turned = {first: rows[:, TURN] / duration - _veer(rows, first, places[first]) for first in places}
 
     def turns(first: int) -> Fit:
-        return _fit(rows[:, first + _ROTATION] / duration, rows[:, TURN] / duration, _places(rows, first))
+        return _fit(rows[:, first + _ROTATION] / duration, turned[first], places[first])
 
     ahead = (ways_ahead(rows, sensor.yaw) + sensor.y * rows[:, TURN]) / duration
 
     def speeds(first: int) -> Fit:
         if sensor.positions:
             return _speeds_of_positions(rows, turns, sensor.y, first)
-        return _fit(rows[:, first + _FORWARD] / duration, ahead, _places(rows, first))
+        return _fit(rows[:, first + _FORWARD] / duration, ahead, places[first])
 
     return {"speed": _Axis(_FORWARD, speeds), "yaw_rate": _Axis(_ROTATION, turns)}
 
@@ -127,6 +129,18 @@ def _speeds_of_positions(rows: Floats, turns: Callable[[int], Fit], sensor_y: fl
     return SquareFit(
         plain.inputs, plain.outputs, plain.parts, beside=-sensor_y * rates, adding=np.square(swings)
     )
+
+
+def _veer(rows: Floats, first: int, places: Ints) -> Floats:
+    """Return yaw rates [N] rad/s that come of driving ahead: a robot that veers turns alike to both sides."""
+    rates = rows[:, [first + _FORWARD, first + _ROTATION, TURN]] / rows[:, [DURATION]]
+    ahead, given, turned = rates.T
+    places = _sane(given, turned, _sane(ahead, turned, places))
+    beside = np.column_stack([given[places + tap] for tap in TAPS] + [np.abs(given[places])])
+    columns = np.column_stack((ahead[places], ahead[places - 1], beside))
+    now, before = np.linalg.lstsq(columns, turned[places], rcond=None)[0][:2]
+    veer: Floats = now * ahead + before * np.roll(ahead, 1)
+    return veer
 
 
 def _lost(rows: Floats, turning: _Axis) -> bool:

@@ -72,6 +72,17 @@ def test_a_model_says_it_and_keeps_it_and_models_are_compared_by_it() -> None:
     assert calibrate(simulated_log(DRIVE), input="wheel").model.content.shares is None
 
 
+def test_a_robot_that_veers_turns_alike_to_both_sides() -> None:
+    """It turns by 0.15 rad for each metre, as with a tyre that is flat."""
+    basis = _core.named_basis("full-linear-6")
+    slip = (-0.1, 0.0, 0.0, 0.0, 0.15, -0.3)  # lon, lat and ang of V and w
+    _, yaw_rate = of_axes(simulated_log(replace(DRIVE, basis=basis, alpha=slip)))
+    assert yaw_rate.forward is None
+    for share in (yaw_rate.arrives, yaw_rate.floor):
+        assert share is not None
+        assert share.value == pytest.approx(0.7, abs=max(0.01, 2.0 * share.std))
+
+
 def test_few_windows_say_nothing() -> None:
     assert shares_of(evidence_of(simulated_log(replace(DRIVE, seconds=20.0)).runs, 0.5).windows) is None
 
