@@ -157,7 +157,7 @@ class FirmwareNumbers:
         logged = self._logged("CRUISE_SPEED", "CRUISE_THROTTLE")
         if isinstance(logged, str):
             return logged
-        return logged[1] / logged[0] if logged[0] > 0.0 else "CRUISE_SPEED is not positive"
+        return logged[1] / logged[0]
 
     def _of_commands(self, what: str, name: str) -> Answer:
         limits, throttle = self._model.limits_section, self._per_speed()

@@ -21,6 +21,10 @@ _BOUNDS = {
     "update_rate": (0.1, 100000.0, "Hz"),
     "planning_horizon": (0.01, 1000.0, "s"),
 }
+#: Parameters of tools that are read as logged: those that scale, and others.
+_OF_PX4 = ("RO_MAX_THR_SPEED", "RO_YAW_RATE_CORR", "RD_MAX_THR_YAW_R")
+_SCALES = (*_OF_PX4, "ATC_STR_RAT_FF", "CRUISE_SPEED", "CRUISE_THROTTLE", "WENC_RADIUS", "WENC2_RADIUS")
+_LOGGED = (*_SCALES, "WENC_POS_Y", "WENC2_POS_Y", "steering_offset")
 
 
 @dataclass(frozen=True)
@@ -62,8 +66,12 @@ class ExportOptions:
                     advice=f"give {least:g} to {most:g} {unit}".rstrip(),
                 )
         for name, value in self.logged.items():
-            if not math.isfinite(value):
-                raise SettingsError(f"{name} was {value}", where="--logged", advice="give a finite number")
+            if name not in _LOGGED:
+                what = f"nothing follows from {name}"
+                raise SettingsError(what, where="--logged", advice=f"one of {', '.join(_LOGGED)}")
+            if not math.isfinite(value) or (name in _SCALES and not value > 0.0):
+                kind = "positive" if name in _SCALES else "finite"
+                raise SettingsError(f"{name} was {value:g}", where="--logged", advice=f"give a {kind} number")
 
     def given(self) -> tuple[str, ...]:
         """Return the names of what is not as by default; the release of ROS may be that of the shell."""

@@ -30,3 +30,20 @@ def test_a_number_out_of_bounds_is_refused_with_its_option(subtests: pytest.Subt
                     ExportOptions(**{name: value})
                 assert f"--{name.replace('_', '-')}" in str(caught.value)
                 assert str(caught.value).rstrip(".").endswith(advice)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("RO_YAW_RATE_COR", 1.2, "nothing follows from RO_YAW_RATE_COR .*RO_YAW_RATE_CORR"),
+        ("RO_YAW_RATE_CORR", 0.0, "RO_YAW_RATE_CORR was 0 .*give a positive number"),
+        ("ATC_STR_RAT_FF", -0.2, "give a positive number"),
+        ("WENC_POS_Y", math.nan, "give a finite number"),
+    ],
+)
+def test_what_was_logged_has_a_name_that_is_read_and_a_number_that_scales(
+    name: str, value: float, message: str
+) -> None:
+    assert ExportOptions(logged={"WENC_POS_Y": -0.2, "steering_offset": 0.0}).logged
+    with pytest.raises(SettingsError, match=message):
+        ExportOptions(logged={name: value})
