@@ -71,6 +71,9 @@ def export(
     planning_horizon: Annotated[
         float, typer.Option(metavar="SECONDS", help="That MPPI plans ahead: time_steps times model_dt.")
     ] = 2.8,
+    filter_rate: Annotated[
+        float, typer.Option(metavar="HZ", help="Of robot_localization's filter: its frequency.")
+    ] = 30.0,
     limits: Annotated[
         bool, typer.Option("--limits", help="Write limits too: as far as the poses show the body.")
     ] = False,
@@ -213,7 +216,7 @@ def _make(model: Model, name: str, to: TargetName, options: ExportOptions) -> _M
         else:
             made.files.append((target, exported))
     if not made.files:
-        raise ModelError(made.left_out[-1][1])
+        raise ModelError("; ".join(f"{name}: {reason}" for name, reason in made.left_out))
     return made
 
 

@@ -96,18 +96,18 @@ def _merged(
     if target != "all":
         return _merged_target(model, model_name, target, options, source), {}
     text, where = source
-    merged, left_out, problem = Merged(text), {}, None
+    merged, left_out = Merged(text), {}
     for each in TARGETS:
         if each.name in _NO_PARAMETERS:
             continue
         try:
             one = _merged_target(model, model_name, each.name, options, (merged.text, where))
         except (ModelError, SettingsError) as found:
-            left_out[each.name], problem = str(found), found
+            left_out[each.name] = str(found)
         else:
             merged = Merged(one.text, merged.changes + one.changes, {**merged.kept, **one.kept})
-    if problem is not None and not merged.changes and not merged.kept:
-        raise problem
+    if left_out and not merged.changes and not merged.kept:
+        raise ModelError("; ".join(f"{name}: {reason}" for name, reason in left_out.items()))
     return merged, left_out
 
 

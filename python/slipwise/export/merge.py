@@ -15,6 +15,7 @@ from slipwise.export.parameter_file import Entry, ParameterFile, Value, yaml_val
 from slipwise.export.parameter_yaml import LONG, NodeParameters, ParameterYaml, same
 
 _MPPI, _MPPI_PLUGIN = "FollowPath", "nav2_mppi_controller::MPPIController"
+_FILTER = "ekf_filter_node"
 _CONTROLLER_TYPE = "diff_drive_controller/DiffDriveController"
 _MULTIPLIERS = {
     "wheel_separation_multiplier": "logged_separation_multiplier",
@@ -43,7 +44,7 @@ class Merged:
 
 
 def options_of(text: str, where: str, options: ExportOptions) -> ExportOptions:
-    """Return the options with what the file itself says: how far MPPI plans, how often controllers run.
+    """Return the options with what the file itself says: how far MPPI plans, how often others run.
 
     Raises:
         SettingsError: the file is no ROS parameter file.
@@ -53,6 +54,9 @@ def options_of(text: str, where: str, options: ExportOptions) -> ExportOptions:
         name = node.name.rsplit("/", 1)[-1]
         if name == "controller_manager" and options.update_rate is None:
             options = replace(options, update_rate=_number(node, "update_rate"))
+        rate = _number(node, "frequency") if node.find("odom0") or name == _FILTER else None
+        if rate and options.filter_rate == ExportOptions().filter_rate:
+            options = replace(options, filter_rate=rate)
         for plugin, kind in node.plugins().items():
             steps, period = _number(node, f"{plugin}.time_steps"), _number(node, f"{plugin}.model_dt")
             if kind == _MPPI_PLUGIN and steps and period and options.planning_horizon == _HORIZON:

@@ -20,6 +20,7 @@ _BOUNDS = {
     "wheel_base": (0.001, 100.0, "m"),
     "update_rate": (0.1, 100000.0, "Hz"),
     "planning_horizon": (0.01, 1000.0, "s"),
+    "filter_rate": (0.1, 100000.0, "Hz"),
 }
 #: Parameters of tools that are read as logged: those that scale, and others.
 _OF_PX4 = ("RO_MAX_THR_SPEED", "RO_YAW_RATE_CORR", "RD_MAX_THR_YAW_R")
@@ -43,6 +44,7 @@ class ExportOptions:
     ros_distro: str | None = None  # release of ROS whose parameters are written, such as jazzy
     update_rate: float | None = None  # Hz, of the controller manager
     planning_horizon: float = 2.8  # s that MPPI plans ahead: time_steps times model_dt
+    filter_rate: float = 30.0  # Hz, of robot_localization's filter: its frequency
     limits: bool = False  # write limits of speeds and accelerations too: they narrow what the robot may do
     stamped_commands: bool | None = None  # whether commands are TwistStamped
     omni: bool = False  # the robot drives sideways, too

@@ -19,7 +19,6 @@ from slipwise.export.reference_drive import (
 from slipwise.export.ros_tables import ROBOT_LOCALIZATION
 from slipwise.models.model import Model
 
-FREQUENCY = 30.0  # Hz, the filter's default
 #: The filter's own defaults of the process noise, [x, y, z, roll, pitch, yaw and their rates, ax, ay, az].
 DEFAULTS = (0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025, 0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015)
 _X, _Y, _YAW = 0, 1, 5
@@ -37,8 +36,8 @@ def robot_localization(model: Model, options: ExportOptions) -> ParameterFile:
     entries = [
         Entry(
             ("frequency",),
-            FREQUENCY,
-            "[Hz] the filter's default; the gains below stay below it",
+            options.filter_rate,
+            "[Hz] the filter's default is 30; the gains below stay below it",
             supposed=True,
         ),
         Entry(("two_d_mode",), True, "the model is planar", supposed=True),
@@ -107,22 +106,22 @@ class _Axis:
     why: str = ""
 
 
-def _axis(channel: ChannelResponse, numbers: LearnedNumbers) -> _Axis:
-    """Return the gain 1/lag, by which the filter multiplies the missing speed."""
+def _axis(channel: ChannelResponse, numbers: LearnedNumbers, rate: float) -> _Axis:
+    """Return the gain 1/lag, by which the filter multiplies the missing speed; at most its `rate` [Hz]."""
     lag = channel.mean_lag
     why = channel.objection or numbers.objection(lag) or channel.delay_objection(numbers)
     if not why and lag.value == 0.0:  # the model has none: how late the robot is must be known at least
         why = numbers.objection(channel.mean_delay)
     if why:
         return _Axis(0.0, why)
-    quick = lag.value * FREQUENCY <= 1.0
-    return _Axis(FREQUENCY if quick else 1.0 / lag.value)
+    quick = lag.value * rate <= 1.0
+    return _Axis(rate if quick else 1.0 / lag.value)
 
 
 def _control(model: Model, options: ExportOptions) -> list[Entry | Kept]:
     """Return the control term of the axes whose lag is known."""
     numbers, actuator = LearnedNumbers(model.body), actuator_of(model)
-    v, omega = _axis(actuator.v, numbers), _axis(actuator.omega, numbers)
+    v, omega = (_axis(channel, numbers, options.filter_rate) for channel in (actuator.v, actuator.omega))
     if v.why and omega.why:
         return [Kept(("use_control",), f"the lag of the speed: {v.why};\nthat of the yaw rate: {omega.why}")]
     delays = f"{numbers.text(actuator.v.delay)} s and {numbers.text(actuator.omega.delay)} s"

@@ -126,7 +126,7 @@ TARGETS = (
         "robot-localization",
         "robot_localization.yaml",
         _parameters(robot_localization),
-        reads=frozenset({"horizon", "stamped_commands"}),
+        reads=frozenset({"horizon", "stamped_commands", "filter_rate"}),
     ),
     Target(
         "autoware",

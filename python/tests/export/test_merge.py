@@ -105,9 +105,11 @@ def test_the_file_says_how_its_tools_run() -> None:
         "controller_server:\n  ros__parameters:\n    Follow:\n"
         "      plugin: nav2_mppi_controller::MPPIController\n"
         "      time_steps: 30\n      model_dt: 0.1\n"
+        "ekf_filter_node:\n  ros__parameters:\n    frequency: 50.0\n"
     )
     options = options_of(text, "users.yaml", ExportOptions())
-    assert (options.update_rate, options.planning_horizon) == (100.0, pytest.approx(3.0))
+    assert (options.update_rate, options.filter_rate) == (100.0, 50.0)
+    assert options.planning_horizon == pytest.approx(3.0)
 
 
 def test_lines_of_an_autopilot(subtests: pytest.Subtests) -> None:

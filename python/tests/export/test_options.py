@@ -23,6 +23,7 @@ def test_a_number_out_of_bounds_is_refused_with_its_option(subtests: pytest.Subt
         ("min_turning_radius", "give 0.001 to 10000 m"),
         ("update_rate", "give 0.1 to 100000 Hz"),
         ("planning_horizon", "give 0.01 to 1000 s"),
+        ("filter_rate", "give 0.1 to 100000 Hz"),
     ]:
         for value in [0.0, -1.0, 1e300, math.nan, math.inf]:
             with subtests.test(name=name, advice=advice, value=value):

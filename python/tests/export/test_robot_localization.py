@@ -13,11 +13,12 @@ from sample_models import Made, make_model, named
 
 from slipwise import _core
 from slipwise.export import ExportOptions, export_model
-from slipwise.export.robot_localization import DEFAULTS, FREQUENCY
+from slipwise.export.robot_localization import DEFAULTS
 
 ROBOT = replace(named("edd-2", ang__w=-0.2), speed=(-0.4, 1.0), yaw_rate=(-0.8, 0.8))
 LAGS = {"log_time_constant_v": float(np.log(0.4)), "log_time_constant_omega": float(np.log(0.25))}
 COMMANDED = replace(ROBOT, commands=True, values=LAGS)
+FREQUENCY = 30.0  # Hz, the filter's default
 
 
 def written(made: Made, options: ExportOptions | None = None) -> dict[str, Any]:
@@ -91,6 +92,8 @@ def test_the_filters_control_term_follows_a_step_as_the_core_does() -> None:
 def test_a_gain_stays_below_the_filters_frequency() -> None:
     quick = replace(COMMANDED, values={"log_time_constant_v": float(np.log(1e-3))})
     assert written(quick)["acceleration_gains"][0] == FREQUENCY
+    parameters = written(quick, ExportOptions(filter_rate=50.0))
+    assert (parameters["frequency"], parameters["acceleration_gains"][0]) == (50.0, 50.0)
 
 
 def test_without_an_actuator_model_the_filter_follows_as_fast_as_it_can() -> None:

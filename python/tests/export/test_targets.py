@@ -124,6 +124,7 @@ GIVEN = ExportOptions(
     min_turning_radius=2.0,
     update_rate=50.0,
     planning_horizon=1.5,
+    filter_rate=50.0,
     limits=True,
     stamped_commands=True,
     omni=True,
