@@ -35,6 +35,17 @@ def slip_gains(numbers: LearnedNumbers, twists: BodyTwists) -> Gains:
     )
 
 
+def reached_text(gains: Gains, numbers: LearnedNumbers) -> str:
+    """Say how much of a command the robot reaches."""
+    speed, yaw = (
+        f"an unknown part of the {what}"
+        if numbers.objection(gain)
+        else f"{gain.value:.3f} of the {what} (+- {numbers.std(gain):.2g})"
+        for gain, what in zip(gains, ("speed", "yaw rate"), strict=True)
+    )
+    return f"reaches {speed} and {yaw}"
+
+
 def body_limits(limits: LimitsSection | None, gains: Gains, numbers: LearnedNumbers) -> BodyLimits:
     """Fold the limits of speed, yaw rate and sides into those of the body.
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from slipwise.errors import ModelError
 from slipwise.export.actuator import Actuator, ChannelResponse
-from slipwise.export.body_limits import Gains, slip_gains
+from slipwise.export.body_limits import Gains, reached_text, slip_gains
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.measured_limits import MeasuredLimits, Quantity
 from slipwise.export.options import ExportOptions
@@ -68,16 +68,10 @@ robot was driven, not what it may do. `--limits` writes what the poses show."""
 
 
 def _reached(gains: Gains, numbers: LearnedNumbers) -> str:
-    """Say how much of a command the robot reaches."""
-    speed, yaw = (
-        f"an unknown part of the {what}"
-        if numbers.objection(gain)
-        else f"{gain.value:.3f} of the {what} (+- {numbers.std(gain):.2g})"
-        for gain, what in zip(gains, ("speed", "yaw rate"), strict=True)
-    )
+    """Say what MPPI supposes of commands, and how much of them the robot reaches."""
     return (
-        f"MPPI takes the robot to reach each command exactly. This one, once settled,\nreaches {speed}"
-        f" and {yaw}:\ncorrect that first,"
+        "MPPI takes the robot to reach each command exactly. This one, once settled,\n"
+        f"{reached_text(gains, numbers)}:\ncorrect that first,"
         " where commands become wheel speeds. Speeds below are of the body."
     )
 

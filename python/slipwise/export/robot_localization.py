@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from slipwise.export.actuator import ChannelResponse, actuator_of
+from slipwise.export.body_limits import reached_text
 from slipwise.export.learned_number import LearnedNumbers
 from slipwise.export.measured_limits import MeasuredLimits, Quantity
 from slipwise.export.options import ExportOptions
@@ -124,12 +125,19 @@ def _control(model: Model, options: ExportOptions) -> list[Entry | Kept]:
     v, omega = (_axis(channel, numbers, options.filter_rate) for channel in (actuator.v, actuator.omega))
     if v.why and omega.why:
         return [Kept(("use_control",), f"the lag of the speed: {v.why};\nthat of the yaw rate: {omega.why}")]
+    gains = MeasuredLimits(model, numbers).gains
     delays = f"{numbers.text(actuator.v.delay)} s and {numbers.text(actuator.omega.delay)} s"
     unknown = [
         f"not the {name}: {axis.why}" for name, axis in (("speed", v), ("yaw rate", omega)) if axis.why
     ]
     return [
-        Entry(("use_control",), True, f"the filter has no delay; this robot's are {delays}"),
+        Entry(
+            ("use_control",),
+            True,
+            f"the filter has no delay; this robot's are {delays}. It takes commands\n"
+            f"for reached; this robot, once settled, {reached_text(gains, numbers)}:\n"
+            "correct that first, where commands become wheel speeds",
+        ),
         _stamped(options.stamped_commands),
         Entry(
             ("control_config",),

@@ -102,6 +102,13 @@ def test_without_an_actuator_model_the_filter_follows_as_fast_as_it_can() -> Non
     assert parameters["acceleration_gains"][0] == FREQUENCY
 
 
+def test_it_is_said_how_much_of_a_command_is_reached() -> None:
+    """The filter takes commands for reached."""
+    slips = make_model(replace(COMMANDED, values={**LAGS, "ang.w": -0.2}))
+    text = export_model(slips, "robot-localization", name="model.yaml").text
+    assert "0.800 of the yaw rate" in text
+
+
 def test_a_model_from_wheel_speeds_has_no_control_term() -> None:
     parameters = written(ROBOT)
     assert parameters["use_control"] is False
