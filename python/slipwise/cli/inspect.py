@@ -85,8 +85,11 @@ def inspect(
     document = _document(inspection)
     if drive is not None:
         document |= {"excite": {"file": excite, "seconds": drive.seconds, "start": drive.start}}
-    out.document(document)
+    code = int(excite is not None and drive is None) * 2
+    out.document(document | {"exit_code": code})
     _show(out, inspection, advise=drive is None)
+    if code:
+        out.line(f"{excite} is not written: what is to be learned next follows from what can be learned.")
     if drive is not None:
         out.line(
             f"{excite}: {drive.seconds:.0f} s of held commands that teach most of what is open, no faster"
@@ -94,7 +97,7 @@ def inspect(
         out.line(
             f"  than this log, inside {excite_area} m; a person plays them, with the stop button in hand"
         )
-    return 0
+    return code
 
 
 def _write_drive(

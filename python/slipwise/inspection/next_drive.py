@@ -32,7 +32,9 @@ def next_drive(
 ) -> Excitation:
     """Return the drive after which the worst prediction is surest, given what this log has taught.
 
-    No command is faster than the log's fastest, nor turns faster: what the robot did it can do again.
+    No command is faster than the log's fastest, nor turns faster: what the robot did it can do again. Of
+    wheels alone, or where poses and inputs contradict each other, a log does not say what the robot makes of
+    commands: the prior does.
 
     Args:
         log: what `open_log` returned.
@@ -59,5 +61,6 @@ def next_drive(
             advice="give limits: `slipwise excite --speed M/S --yaw-rate RAD/S`",
         ) from problem
     space = CommandSpace(limits.speed, limits.yaw_rate)
-    known = knowledge_of(model) if model.vector.rows else prior_knowledge(space)
+    says = model.content.input == "command" and not model.verdict.contradictions and model.vector.rows
+    known = knowledge_of(model) if says else prior_knowledge(space)
     return design_drive(known, space, options, progress=progress)

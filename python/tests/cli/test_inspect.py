@@ -101,3 +101,10 @@ def test_the_drive_that_teaches_most_stands_in_place_of_advice(slipwise: Slipwis
     assert Path("next.csv").read_text(encoding="utf-8").startswith("t,")
     wrong = slipwise("inspect", drive_csv, "--excite", "next.csv", "--excite-area", "big")
     assert wrong.line.startswith("'big' is not an area (--excite-area)")
+
+
+def test_a_drive_that_cannot_be_designed_is_said_to_be_missing(slipwise: Slipwise, folder: Path) -> None:
+    (folder / "a.csv").write_text("t,cmd_v,cmd_omega\n0,1,0\n1,1,0\n")
+    result = slipwise("inspect", "a.csv", "--excite", "next.csv")
+    assert (result.code, Path("next.csv").exists()) == (2, False)
+    assert "next.csv is not written" in result.out

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -48,6 +49,16 @@ def test_what_inspect_learned_is_not_learned_again(monkeypatch: pytest.MonkeyPat
 def test_nothing_is_kept_where_calibrate_learns_another_way() -> None:
     log = simulated_log(Drive(seconds=20.0, **SLIP))  # type: ignore[arg-type]
     assert inspect_log(log, Settings(estimator="iekf"), keep=True).kept is None
+
+
+def test_of_wheels_alone_the_prior_says_what_commands_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = sys.modules["slipwise.inspection.next_drive"]
+    monkeypatch.setattr(module, "design_drive", lambda known, *_, **__: known)
+    log = simulated_log(Drive(seconds=40.0, **SLIP))  # type: ignore[arg-type]
+    wheels = replace(log, runs=tuple(replace(run, commands=None) for run in log.runs))
+    of_commands, of_wheels = (next_drive(each, FEW) for each in (log, wheels))
+    assert "log_delay_v" in of_wheels.names
+    assert of_wheels.covariance[0, 0] > 10.0 * of_commands.covariance[0, 0]
 
 
 @pytest.mark.slow
