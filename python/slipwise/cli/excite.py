@@ -131,6 +131,8 @@ def _known(
         limits = {name: getattr(vehicle.space, name) for name in ("speed", "yaw_rate", "lateral")}
     if learned is not None and axes_of(learned).sideways:
         limits["sideways"] = _sideways_limit(learned)
+    if learned is not None and learned.steers:
+        limits["curvature"] = limits_of(learned).curvature
     limits |= {name: value for name, value in given.items() if value is not None}
     if "speed" not in limits or "yaw_rate" not in limits:
         raise SettingsError(

@@ -26,11 +26,12 @@ class CommandSpace:
     yaw_rate: float  # rad/s
     lateral: float = math.inf  # m/s^2, of speed times yaw rate
     sideways: float = 0.0  # m/s to both sides; 0: the robot does not drive sideways
+    curvature: float = math.inf  # 1/m, of yaw rate over speed; a robot that steers has a largest
 
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            infinite = math.isinf(value) and field.name != "lateral"
+            infinite = math.isinf(value) and field.name not in ("lateral", "curvature")
             if not (value > 0.0 or (value == 0.0 and field.name == "sideways")) or infinite:
                 raise SettingsError(
                     f"the limit {field.name} is {value}", where=field.name, advice="give a positive number"
@@ -68,6 +69,9 @@ class CommandSpace:
             v, omega = (axis.ravel() for axis in np.meshgrid(speeds[few], yaw_rates[few], indexing="ij"))
             rows.append(np.column_stack((v, np.full(len(v), vy), omega)))
         all_rows = np.vstack(rows)
-        driven = np.hypot(all_rows[:, 0], all_rows[:, 1]) * np.abs(all_rows[:, 2])
-        kept: NDArray[np.float64] = all_rows[driven <= self.lateral * (1.0 + ROUNDING)]
+        driven, turned = np.hypot(all_rows[:, 0], all_rows[:, 1]), np.abs(all_rows[:, 2])
+        within = driven * turned <= self.lateral * (1.0 + ROUNDING)
+        if math.isfinite(self.curvature):
+            within &= turned <= self.curvature * driven * (1.0 + ROUNDING)
+        kept: NDArray[np.float64] = all_rows[within]
         return kept

@@ -42,7 +42,7 @@ def mppi(model: Model, options: ExportOptions) -> ParameterFile:
     numbers, limits = LearnedNumbers(model.body), model.limits_section
     measured = MeasuredLimits(model, numbers)
     entries = [
-        *_kind(options, distro),
+        *_kind(distro, steers=model.steers or options.min_turning_radius is not None),
         *_delays(measured.actuator, numbers, options.planning_horizon),
         *(_limits(model, measured, numbers) if options.limits else ()),
         *_turning(model, options, numbers, distro),
@@ -76,9 +76,8 @@ def _reached(gains: Gains, numbers: LearnedNumbers) -> str:
     )
 
 
-def _kind(options: ExportOptions, distro: str) -> list[Entry]:
-    kind = "diff-drive" if options.min_turning_radius is None else "ackermann"
-    name, plugin = motion_model(kind, distro)
+def _kind(distro: str, *, steers: bool) -> list[Entry]:
+    name, plugin = motion_model("ackermann" if steers else "diff-drive", distro)
     if not plugin:
         return [Entry(("motion_model",), name, "the kind of vehicle", supposed=True)]
     return [

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from slipwise.calibration import Settings, calibrate
@@ -60,7 +61,8 @@ def next_drive(
             where="--excite",
             advice="give limits: `slipwise excite --speed M/S --yaw-rate RAD/S`",
         ) from problem
-    space = CommandSpace(limits.speed, limits.yaw_rate)
+    curvature = limits.curvature if model.steers else math.inf
+    space = CommandSpace(limits.speed, limits.yaw_rate, curvature=curvature)
     says = model.content.input == "command" and not model.verdict.contradictions and model.vector.rows
     known = knowledge_of(model) if says else prior_knowledge(space)
     return design_drive(known, space, options, progress=progress)

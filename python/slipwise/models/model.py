@@ -125,6 +125,11 @@ class Model:
         other = self.content.other_input
         return (self.content.input,) if other is None else (self.content.input, other.input)
 
+    @property
+    def steers(self) -> bool:
+        """Whether the robot is known to be commanded by speed and steering angle."""
+        return any(self.of_input(name).content.wheelbase is not None for name in self.inputs)
+
     @cached_property
     def _other(self) -> Model | None:
         other = self.content.other_input

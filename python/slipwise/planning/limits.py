@@ -42,6 +42,7 @@ class Limits:
 def limits_of(model: Model) -> Limits:
     """Return limits within which the model was learned; the curvature is that of full turning at half speed.
 
+    A robot that steers may turn no tighter than at full speed, since how far it was steered is not kept.
     Where the drive has learned limits, the tighter of the two hold; so that its ramps keep up with the
     commands, the acceleration is no more than it accelerates and brakes with.
 
@@ -65,7 +66,7 @@ def limits_of(model: Model) -> Limits:
             "the model was learned from a drive without speed or without turning",
             advice="give limits, or calibrate on a drive that has both",
         )
-    curvature = 2.0 * yaw_rate / speed
+    curvature = (1.0 if model.steers else 2.0) * yaw_rate / speed
     return Limits(speed=speed, yaw_rate=yaw_rate, curvature=curvature, acceleration=acceleration)
 
 

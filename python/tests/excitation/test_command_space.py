@@ -45,3 +45,9 @@ def test_limit_that_is_none_is_refused(subtests: pytest.Subtests) -> None:
     for limits in [(0.0, 1.0), (1.0, -1.0), (math.nan, 1.0), (math.inf, 1.0), (1.0, 1.0, 0.0)]:
         with subtests.test(limits=limits), pytest.raises(SettingsError, match="the limit"):
             CommandSpace(*limits)
+
+
+def test_a_robot_that_steers_is_commanded_no_tighter_turn() -> None:
+    grid = CommandSpace(2.0, 1.0, curvature=0.5).grid(3)
+    assert (np.abs(grid[:, 2]) <= 0.5 * np.abs(grid[:, 0]) + 1e-9).all()
+    assert [2.0, 0.0, 1.0] in grid.tolist()

@@ -211,3 +211,11 @@ def test_a_model_from_wheel_speeds_is_refused() -> None:
 def test_a_vehicle_that_does_not_turn_as_steered_is_refused() -> None:
     with pytest.raises(ModelError, match="does not turn the way it is steered"):
         written(replace(LATE, values={"ang.w": -1.1}), replace(NEW, min_turning_radius=0.8))
+
+
+def test_a_robot_that_steers_is_no_diff_drive() -> None:
+    car = make_model(replace(LATE, wheelbase=0.5))
+    with pytest.raises(ModelError, match="no diff_drive_controller"):
+        export_model(car, "diff-drive", name="model.yaml", options=NEW)
+    made = export_model(car, "mppi", name="model.yaml", options=NEW)
+    assert made.values["FollowPath.motion_model"] == "ackermann"

@@ -50,3 +50,8 @@ def test_a_start_that_is_not_finite_is_refused() -> None:
     for wrong in ({"drive": (math.nan, 0.0)}, {"commanded": (0.0, math.inf)}, {"fast": (math.nan, 0.0)}):
         with pytest.raises(SettingsError, match="not finite"):
             DriveState(**wrong)
+
+
+def test_a_robot_that_steers_turns_no_tighter_than_at_full_speed() -> None:
+    car = limits_of(make_model(made(speed=(0.0, 2.0), yaw_rate=(-0.5, 0.5), commands=True, wheelbase=1.2)))
+    assert car.curvature == pytest.approx(0.25)
