@@ -85,11 +85,13 @@ class TurnedPoses(Check):
             return None
         side = "left" if angle > 0.0 else "right"
         degrees = estimate_text(math.degrees(abs(angle)), math.degrees(std))
+        yaw = round(seen.sensor_yaw - angle, 2) + 0.0  # no negative zero
         return self.found(
             f"the poses move {degrees} deg to the {side} of their heading where the {seen.words.name} drive "
             "straight on: a sensor that is turned on the robot would, or a robot that slips sideways so much",
-            f"If it is turned, --set sensor_extrinsics.yaw={seen.sensor_yaw - angle:.2f} says so: without "
-            "it, speeds and wheel radii are learned too small.",
+            "If it is turned, or a --pose-yaw-offset in force is wrong, "
+            f"--set sensor_extrinsics.yaw={yaw:.2f} says so: without it, speeds and wheel radii are learned "
+            "too small.",
             evidence=math.degrees(angle),
             spoils=False,
         )

@@ -131,7 +131,7 @@ def test_a_sensor_that_is_turned_by_20_degrees_is_said_with_the_angle_and_spoils
         assert (found.kind, found.spoils) == ("turned-poses", False)
         assert found.evidence == pytest.approx(-20.0, abs=1.0)
         assert "to the right of their heading" in found.sentence
-        assert "--set sensor_extrinsics.yaw=0.3" in found.advice[0]
+        assert "--pose-yaw-offset in force is wrong, --set sensor_extrinsics.yaw=0.3" in found.advice[0]
         assert findings_of(log, name, sensor=(0.0, 0.0, np.radians(20.0))) == ()
 
 
