@@ -175,10 +175,10 @@ def export_model(
     """
     check_arguments(export_model, locals())
     made = find_target(target)
-    if model.steers and target == "diff-drive":
-        raise ModelError("a robot that steers has no diff_drive_controller", advice="export another file")
-    model = without_force(for_target(model, made))
+    steers, model = model.steers, without_force(for_target(model, made))
     model.refuse_throttle("exported files")
+    if steers and target == "diff-drive":
+        raise ModelError("a robot that steers has no diff_drive_controller", advice="export another file")
     if not made.sideways:
         refuse_sideways(model, f"files of {target}")
     if not force:

@@ -10,6 +10,7 @@ from matrix.situation import Situation
 #: Which situations are refused in which uses, and what the refusal says.
 REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
     (lambda s: s.robot.kind == "throttle", "trajectory c-header excite to-", "throttle and steering"),
+    (lambda s: s.robot.kind == "steering", "to-diff-drive", "has no diff_drive_controller"),
     (lambda s: s.axes == 3, "to-", "have no sideways speed"),
     (lambda s: s.learns == "wheel", "to-mppi", "was not learned from commands"),
     (lambda s: s.learns == "command", "to-diff-drive to-amcl to-autoware", "calibrate with `--input wheel`"),

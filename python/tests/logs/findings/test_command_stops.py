@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from slipwise.live.command_stops import LiveCommandStops
 from slipwise.live.recent_log import RecentLog
 from slipwise.logs import Inputs, Log, LogOptions, Poses, Run, open_log, save_log
 from slipwise.logs.command_timeout import with_ended_commands
@@ -97,6 +98,18 @@ def test_a_wrong_timeout_is_named_with_the_right_one(tmp_path: Path, given: floa
     assert found.advice[0].startswith("Give --command-timeout")
     assert found.evidence == pytest.approx(0.5, abs=0.051)
     assert found.spoils
+
+
+def test_a_wrong_timeout_is_named_live_too() -> None:
+    commands, poses = drive(120.0, 120.0)
+    stops = LiveCommandStops(0.5, given=1.0)
+    for t, v, omega in zip(commands.t.tolist(), commands.v.tolist(), commands.omega.tolist(), strict=True):
+        stops.take_command(Command(t, v, omega))
+    stops.take_command(Command(float(commands.t[-1]) + 0.01, 0.0, 0.0, ended=True))
+    for t, x in zip(poses.t.tolist(), poses.x.tolist(), strict=True):
+        stops.take_pose(Pose(t, x, 0.0, 0.0), 0)
+    (found,) = stops.found()
+    assert found.evidence == pytest.approx(WAITS, abs=0.051)
 
 
 def test_a_timeout_of_a_robot_that_has_none_is_named() -> None:
