@@ -13,6 +13,7 @@ REFUSED: tuple[tuple[Callable[[Situation], bool], str, str], ...] = (
     (lambda s: s.robot.kind == "steering", "to-diff-drive", "has no diff_drive_controller"),
     (lambda s: s.axes == 3, "to-", "have no sideways speed"),
     (lambda s: s.learns == "wheel", "to-mppi", "was not learned from commands"),
+    (lambda s: s.learns == "wheel", "excite", "nothing from commands"),
     (lambda s: s.learns == "command", "to-diff-drive to-amcl to-autoware", "calibrate with `--input wheel`"),
     (lambda s: "positions" in s.name, "mcap", "positions without headings are not written as a bag"),
     (lambda s: s.before is not None, "several-logs", "has no wheel input"),
