@@ -55,6 +55,12 @@ void merge(const Recording& run, Receiver&& receiver) {
   }
 }
 
+/// A stream that cuts nothing to hold predictions against, for callers who take none of it.
+SegmentStream without_targets(StreamSettings settings) {
+  settings.horizons.clear();
+  return SegmentStream(settings);
+}
+
 /// Drives a stream through a run.
 void stream_run(SegmentStream& stream, const Recording& run) {
   stream.start_run();
@@ -91,7 +97,7 @@ void push(MotionLearner& learner, const Recording& run) {
 }
 
 CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> runs) {
-  SegmentStream stream(settings);
+  SegmentStream stream = without_targets(settings);
   CutRuns cut;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     stream_run(stream, runs[i]);
@@ -110,7 +116,7 @@ CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> 
 }
 
 MotionEvidence motion_evidence(const StreamSettings& settings, std::span<const Recording> runs) {
-  SegmentStream stream(settings);
+  SegmentStream stream = without_targets(settings);
   for (const Recording& run : runs) {
     stream_run(stream, run);
     stream.take_items();
@@ -121,7 +127,7 @@ MotionEvidence motion_evidence(const StreamSettings& settings, std::span<const R
 
 std::vector<std::vector<InputSample>> expected_commands(const StreamSettings& settings,
                                                         std::span<const Recording> runs) {
-  SegmentStream stream(settings);
+  SegmentStream stream = without_targets(settings);
   std::vector<std::vector<InputSample>> expected;
   for (const Recording& run : runs) {
     stream.start_run();

@@ -29,7 +29,7 @@ def with_car_commands(log: Log, options: LogOptions) -> Log:
     where = log.sources[0].path if log.sources else ""
     settings = _core.StreamSettings()
     settings.car = _core.CarPrior(car.top_speed, car.curvature, None)
-    settings.unknown_after, settings.horizons = options.unknown_after, []
+    settings.unknown_after = options.unknown_after
     found = _core.expected_commands(settings, [_recording(run, where) for run in log.runs])
     runs = []
     for run, rows in zip(log.runs, found, strict=True):

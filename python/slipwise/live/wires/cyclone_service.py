@@ -51,16 +51,23 @@ class CycloneService:
         self._number = 0
         self._lock = threading.Lock()
 
-    def call(self, request: bytes, until: float) -> bytes | None:
-        """Return the answer to a request, or None where none comes until then [s, of the monotonic clock]."""
+    def call(self, request: bytes, matched_until: float, timeout: float) -> bytes | None:
+        """Return the answer to a request, or None where none comes.
+
+        Args:
+            request: CDR with its header.
+            matched_until: when both ends must have found each other [s, of the monotonic clock].
+            timeout: of the answer [s].
+        """
         with self._lock:
             while not (self.writer.get_matched_subscriptions() and self.reader.get_matched_publications()):
-                if time.monotonic() >= until:
+                if time.monotonic() >= matched_until:
                     return None
                 time.sleep(_STEP)
             take_cdr(self.reader)  # what others asked for
             self._number += 1
             write_cdr(self.writer, self._with_number(request))
+            until = time.monotonic() + timeout
             while time.monotonic() < until:
                 for answer in take_cdr(self.reader):
                     own = self._without_number(answer)

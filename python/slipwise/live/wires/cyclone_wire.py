@@ -25,6 +25,7 @@ _DEPTH = 1000  # messages kept for who is busy, on either side: 10 s at 100 Hz
 _WAIT = 200_000_000  # ns
 _PAUSE = 0.005  # s after messages were taken: a wake-up for each would cost more than to read it
 _LOOK = 0.25  # s between looks for who publishes, and for silent topics
+DISCOVERY = 5.0  # s after it was opened until a wire knows all others; mostly 1 s
 
 
 @dataclass
@@ -70,6 +71,7 @@ class CycloneWire:
         self._lock = threading.RLock()
         self._delivery = Delivery(self._silence)
         self._closed = self._delivery.closed
+        self._opened = time.monotonic()
         self._wake: Any = GuardCondition(self._participant)
         self._waitset: Any = WaitSet(self._participant)
         self._waitset.attach(self._wake)
@@ -136,13 +138,14 @@ class CycloneWire:
     def call(self, service: str, type_name: str, request: bytes, *, timeout: float) -> bytes | None:
         """Call a service; None where no answer comes in time [s].
 
+        A wire that was just opened gets `DISCOVERY` to find the service first.
         Answers of Fast DDS say only in a header that Cyclone does not show whose they are: the next answer of
         the service counts.
 
         Raises:
             SettingsError: there is no such service type, or no such name of a service.
         """
-        until = time.monotonic() + timeout
+        until = max(time.monotonic() + timeout, self._opened + DISCOVERY)
         reply = f"rr{require_topic(service)}Reply"
         vendor = None
         while vendor is None and time.monotonic() < until:
@@ -161,7 +164,7 @@ class CycloneWire:
                 self._services[service] = made
                 self._graph.add(reader=made.reader, writer=made.writer)
             asked = self._services[service]
-        return asked.call(request, until)
+        return asked.call(request, until, timeout)
 
     def connections(self, topic: str) -> int:
         """Return how many publishers we hear on a topic, and how many subscriptions hear us."""
