@@ -31,6 +31,7 @@ _LARGEST = 100.0  # times what is commanded; more is of commands that are as goo
 _TINY, _HUGE = 1e-6, 1e6  # m/s or rad/s; no robot is commanded less, or drives more
 _BEND = 1.0  # rad that a window may turn, and turn more than its neighbours, where positions tell speeds
 _WRAPS = 1.2  # rad by which turns in windows scatter, from which on many pass for turns the other way
+_ALONE = 0.05  # of the squares of speeds; where turns explain the rest, driving ahead is not told from them
 _COMMANDS, _WHEELS = 9, 13  # columns of forward, sideways, rotation, known
 _FORWARD, _SIDEWAYS, _ROTATION = 0, 1, 2
 RUN, START, DURATION, DISTANCE, TURN, AHEAD, LEFT = 0, 1, 3, 4, 6, 17, 18  # columns of `_core` rows
@@ -137,6 +138,9 @@ def _veer(rows: Floats, first: int, places: Ints) -> Floats:
     ahead, given, turned = rates.T
     places = _sane(given, turned, _sane(ahead, turned, places))
     beside = np.column_stack([given[places + tap] for tap in TAPS] + [np.abs(given[places])])
+    alone = ahead[places] - beside @ np.linalg.lstsq(beside, ahead[places], rcond=None)[0]
+    if np.square(alone).sum() <= _ALONE * np.square(ahead[places]).sum():
+        return np.zeros(len(rows))  # driving ahead cannot be told from turning, as on one circle
     columns = np.column_stack((ahead[places], ahead[places - 1], beside))
     now, before = np.linalg.lstsq(columns, turned[places], rcond=None)[0][:2]
     veer: Floats = now * ahead + before * np.roll(ahead, 1)

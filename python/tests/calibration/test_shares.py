@@ -13,7 +13,7 @@ import slipwise as sw
 from slipwise import _core
 from slipwise.calibration import calibrate
 from slipwise.calibration.shares import PoseSensor, shares_of
-from slipwise.logs import Log, Poses
+from slipwise.logs import Inputs, Log, Poses
 from slipwise.logs.motion_windows import evidence_of
 from slipwise.models.difference import differences
 from slipwise.models.schema import AxisShares
@@ -81,6 +81,20 @@ def test_a_robot_that_veers_turns_alike_to_both_sides() -> None:
     for share in (yaw_rate.arrives, yaw_rate.floor):
         assert share is not None
         assert share.value == pytest.approx(0.7, abs=max(0.01, 2.0 * share.std))
+
+
+def test_on_one_circle_no_turn_is_taken_for_veering() -> None:
+    t = np.arange(0.0, 100.0, 0.05)
+    v = np.random.default_rng(1).uniform(0.4, 1.2, 20)[(t // 5.0).astype(int)]
+    yaw = 0.3 * np.append(0.0, np.cumsum(v[:-1]) * 0.05)  # 60 % of what is commanded
+    run = simulated_log(replace(DRIVE, seconds=1.0)).runs[0]
+    commands = Inputs(t=t, v=v, vy=0.0 * t, omega=0.5 * v)
+    poses = Poses(
+        t=t, x=np.sin(yaw) / 0.3, y=(1.0 - np.cos(yaw)) / 0.3, yaw=yaw, frame=np.zeros(len(t), np.int64)
+    )
+    circled = replace(run, commands=commands, wheels=commands, poses=poses)
+    for share, truth in zip(of_axes(Log(runs=(circled,))), (1.0, 0.6), strict=True):
+        assert share.arrives.value == pytest.approx(truth, abs=0.01)
 
 
 def test_few_windows_say_nothing() -> None:
