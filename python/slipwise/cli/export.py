@@ -144,6 +144,7 @@ def export(
     no_target = merge is not None and px4 is None and ardupilot is None
     target = to or (TargetName.all if no_target else _of_firmware(px4, ardupilot))
     if target is not TargetName.all:
+        _refuse_other_input(find_target(target.value), input_name)
         find_target(target.value).refuse_others(options)
     learned = load_model(model, input=input_name)
     learned = learned if surface is None else on_surface(learned, surface)
@@ -162,6 +163,17 @@ def export(
         write_text_whole(paths[written.name], exported.text)
     _report(out, learned, made, paths)
     return 0
+
+
+def _refuse_other_input(target: Target, asked: str | None) -> None:
+    """Refuse an input that a target does not take, which whoever named it expects in its file."""
+    from slipwise.errors import SettingsError
+    from slipwise.models.inputs import MANY
+
+    if asked is not None and target.input not in (None, asked):
+        raise SettingsError(
+            f"{target.name} is of {MANY[target.input]}", where="--input", advice="leave it out"
+        )
 
 
 def _logged(given: Sequence[str]) -> dict[str, float]:

@@ -119,6 +119,10 @@ REFUSED = {
         ("wheel.yaml", "--to", "diff-drive", "--ros-distro", "jazzy", "--min-turning-radius", "1"),
         "smallest turning radius has no diff_drive_controller",
     ),
+    "other input": (
+        ("wheel.yaml", "--to", "diff-drive", "--input", "command"),
+        "is of wheel speeds (--input)",
+    ),
     "no target": (("wheel.yaml",), "Missing option '--to'"),
     "two firmwares": (("command.yaml", "--px4", "1.17", "--ardupilot", "4.6"), "Missing option '--to'"),
     "no firmware": (("command.yaml", "--to", "px4"), "other names in each version: add --px4"),
