@@ -68,10 +68,12 @@ def excite(
     from slipwise.cli.tables import show_files
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.excitation import ExcitationOptions, design_drive, lessons_of
+    from slipwise.live.wires.wire import require_topic
     from slipwise.models import load_model
     from slipwise.reporting.excitation_page import summary
 
     out = Output(json)
+    require_topic(topic)
     files = {kind: output.with_name(f"{output.name}.{kind}") for kind in ("csv", "mcap", "html")}
     refuse_unwritable(*files.values(), out.written_file, inputs=[model, prior])
     robot = _vehicle(vehicle)

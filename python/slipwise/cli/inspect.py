@@ -19,6 +19,7 @@ from slipwise.cli.options import (
     optional,
     takes_log_options,
 )
+from slipwise.errors import SettingsError
 from slipwise.number_text import count_text, number_text
 
 if TYPE_CHECKING:
@@ -44,8 +45,8 @@ def inspect(
         optional("FILE.csv", "Write the drive that teaches most after this log, in place of advice."),
     ] = None,
     excite_area: Annotated[
-        str, typer.Option("--excite-area", metavar="WxD", help="Its free ground: metres along, and across.")
-    ] = "8x8",
+        str | None, optional("WxD", "Its free ground: metres along, and across (8x8 where not given).")
+    ] = None,
     json: Json = None,
 ) -> int:
     """Say what is in one or several logs and what could be learned from them.
@@ -72,6 +73,8 @@ def inspect(
 
     out = Output(json)
     chosen = chosen_settings(settings, changes, basis)
+    _refuse_unused(excite, excite_area, strict=strict)
+    area = excite_area or "8x8"
     refuse_unwritable(out.written_file, excite, inputs=(*logs, *log_options.files, settings))
     if strict:
         return _check_strictly(out, logs)
@@ -81,7 +84,7 @@ def inspect(
         if excite is not None and not inspection.problem:
             from slipwise.cli.numbers import area_of
 
-            drive = _write_drive(excite, inspection, area_of(excite_area, "--excite-area"), chosen, update)
+            drive = _write_drive(excite, inspection, area_of(area, "--excite-area"), chosen, update)
     document = _document(inspection)
     if drive is not None:
         document |= {"excite": {"file": excite, "seconds": drive.seconds, "start": drive.start}}
@@ -94,10 +97,15 @@ def inspect(
         out.line(
             f"{excite}: {drive.seconds:.0f} s of held commands that teach most of what is open, no faster"
         )
-        out.line(
-            f"  than this log, inside {excite_area} m; a person plays them, with the stop button in hand"
-        )
+        out.line(f"  than this log, inside {area} m; a person plays them, with the stop button in hand")
     return code
+
+
+def _refuse_unused(excite: Path | None, area: str | None, *, strict: bool) -> None:
+    if excite is None and area is not None:
+        raise SettingsError("no drive is asked for", where="--excite-area", advice="give --excite too")
+    if excite is not None and strict:
+        raise SettingsError("a format is checked alone", where="--strict", advice="leave --excite away")
 
 
 def _write_drive(
@@ -127,7 +135,6 @@ def _check_strictly(out: Output, logs: Sequence[Path]) -> int:
 
     from slipwise.cli.document import head
     from slipwise.cli.output import Column
-    from slipwise.errors import SettingsError
     from slipwise.inspection import check_strictly
 
     if len(logs) != 1:

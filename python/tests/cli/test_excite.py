@@ -60,6 +60,7 @@ def test_wrong_use_ends_with_code_2_and_says_why(
     for arguments, message in [
         (("--model", "wheel.yaml"), "nothing from commands"),
         (("--vehicle", "unicycle"), "husky"),
+        (("--vehicle", "husky", "--topic", "bad topic"), "not the name of a topic"),
         ((), "--vehicle"),
         (("--vehicle", "husky", "--area", "8"), "8x8"),
         (("--vehicle", "husky", "--minutes", "0.01"), "too short"),

@@ -101,6 +101,8 @@ def test_the_drive_that_teaches_most_stands_in_place_of_advice(slipwise: Slipwis
     assert Path("next.csv").read_text(encoding="utf-8").startswith("t,")
     wrong = slipwise("inspect", drive_csv, "--excite", "next.csv", "--excite-area", "big")
     assert wrong.line.startswith("'big' is not an area (--excite-area)")
+    unused = slipwise("inspect", drive_csv, "--excite-area", "9x9")
+    assert unused.line.startswith("no drive is asked for (--excite-area): give --excite too")
 
 
 def test_a_drive_that_cannot_be_designed_is_said_to_be_missing(slipwise: Slipwise, folder: Path) -> None:
