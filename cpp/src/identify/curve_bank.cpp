@@ -54,7 +54,7 @@ void CurveBank::learn(const Eigen::MatrixXd& features, double output) {
     const double error = (output - row.dot(weights_[k])) / std::sqrt(size);
     const double weight = kAlike / std::max(1.0, std::abs(error) / kHuber);
     squares_[k] += size * huber_square(error);
-    information_[k] += weight * row * row.transpose();
+    information_[k].noalias() += (weight * row) * row.transpose();
     evidence_[k] += weight * output * row;
   }
   examples_ += 1.0;
