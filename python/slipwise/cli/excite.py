@@ -69,7 +69,6 @@ def excite(
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.excitation import ExcitationOptions, design_drive, lessons_of
     from slipwise.live.wires.wire import require_topic
-    from slipwise.models import load_model
     from slipwise.reporting.excitation_page import summary
 
     out = Output(json)
@@ -78,8 +77,8 @@ def excite(
     refuse_unwritable(*files.values(), out.written_file, inputs=[model, prior])
     robot = _vehicle(vehicle)
     given = {"speed": speed, "yaw_rate": yaw_rate, "lateral": lateral}
-    space, knowledge = _known((model, prior), robot, given)
-    learned = None if model is None else load_model(model).of_input("command")
+    learned = _learned(model, prior)
+    space, knowledge = _known((learned, prior), robot, given)
     if learned is not None and not learned.verdict.good and not force:
         say_refused(out, learned, "excite")
         return 1
@@ -93,7 +92,7 @@ def excite(
     lessons = lessons_of(designed)
     _write(files, designed, lessons, (topic, stamped))
     document = _document(designed, lessons, files)
-    in_reverse = "" if model is None else _reverse(model, designed)
+    in_reverse = "" if learned is None else _reverse(learned, designed)
     for sentence in filter(None, (*summary(designed, lessons), in_reverse)):
         out.line(sentence)
     show_files(out, files)
@@ -107,24 +106,31 @@ def _vehicle(name: str | None) -> Vehicle | None:
     return None if name is None else vehicle_named(name)
 
 
+def _learned(model: Path | None, prior: Path | None) -> Model | None:
+    from slipwise.errors import SettingsError
+    from slipwise.models import load_model
+
+    if model is None:
+        return None
+    if prior is not None:
+        raise SettingsError("a model of this robot takes the place of its fleet's prior", where="--prior")
+    learned = load_model(model, input="command")
+    learned.refuse_throttle("designed drives")
+    return learned
+
+
 def _known(
-    files: tuple[Path | None, Path | None], vehicle: Vehicle | None, given: dict[str, float | None]
+    known: tuple[Model | None, Path | None], vehicle: Vehicle | None, given: dict[str, float | None]
 ) -> tuple[CommandSpace, Knowledge]:
     """Return the limits of the commands and the start, of a model or a fleet's prior."""
     from slipwise.calibration.from_prior import KnownFleet
     from slipwise.calibration.new_robot import new_robot_knowledge
     from slipwise.errors import SettingsError
     from slipwise.excitation import CommandSpace, knowledge_of, prior_knowledge
-    from slipwise.models import load_model
     from slipwise.models.axes import axes_of
     from slipwise.planning import limits_of
 
-    model, prior = files
-    if model is not None and prior is not None:
-        raise SettingsError("a model of this robot takes the place of its fleet's prior", where="--prior")
-    learned = None if model is None else load_model(model).of_input("command")
-    if learned is not None:
-        learned.refuse_throttle("designed drives")
+    learned, prior = known
     limits: dict[str, float] = {}
     if learned is not None and vehicle is None:
         of_model = limits_of(learned)
@@ -150,14 +156,13 @@ def _known(
     return space, knowledge_of(learned)
 
 
-def _reverse(model: Path, drive: Excitation) -> str:
+def _reverse(model: Model, drive: Excitation) -> str:
     """Say that the robot is to drive in reverse, where its model never saw it do so; else empty."""
     from slipwise.excitation import command_inputs
-    from slipwise.models import load_model
     from slipwise.number_text import number_text
 
     slowest = float(command_inputs(drive).v.min())
-    if slowest >= 0.0 or load_model(model).content.range.speed[0] < 0.0:
+    if slowest >= 0.0 or model.content.range.speed[0] < 0.0:
         return ""
     return f"It drives in reverse, down to {number_text(slowest)} m/s, which the model has never seen."
 

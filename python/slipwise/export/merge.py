@@ -55,7 +55,7 @@ def options_of(text: str, where: str, options: ExportOptions) -> ExportOptions:
         if name == "controller_manager" and options.update_rate is None:
             options = replace(options, update_rate=_number(node, "update_rate"))
         rate = _number(node, "frequency") if node.find("odom0") or name == _FILTER else None
-        if rate and options.filter_rate == ExportOptions().filter_rate:
+        if rate and options.filter_rate == _RATE:
             options = replace(options, filter_rate=rate)
         for plugin, kind in node.plugins().items():
             steps, period = _number(node, f"{plugin}.time_steps"), _number(node, f"{plugin}.model_dt")
@@ -64,7 +64,7 @@ def options_of(text: str, where: str, options: ExportOptions) -> ExportOptions:
     return options
 
 
-_HORIZON = ExportOptions().planning_horizon
+_HORIZON, _RATE = ExportOptions().planning_horizon, ExportOptions().filter_rate
 
 
 def merge_parameters(text: str, where: str, made: ParameterFile, options: ExportOptions) -> Merged:

@@ -44,6 +44,7 @@ class Target:
     file_name: str
     make: Callable[[Model, ExportOptions, list[str]], Exported]
     sideways: bool = False  # whether the file can hold a sideways speed
+    steers: bool = True  # whether a robot that steers has such a file
     input: InputName | None = None  # that its numbers are of; None: of either
     reads: frozenset[str] = frozenset()  # the options that its file depends on
 
@@ -112,7 +113,12 @@ _MPPI = frozenset({"limits", "min_turning_radius", "planning_horizon"})
 
 TARGETS = (
     Target(
-        "diff-drive", "diff_drive_controller.yaml", _parameters(diff_drive), input="wheel", reads=_DIFF_DRIVE
+        "diff-drive",
+        "diff_drive_controller.yaml",
+        _parameters(diff_drive),
+        steers=False,
+        input="wheel",
+        reads=_DIFF_DRIVE,
     ),
     Target("mppi", "nav2_mppi.yaml", _parameters(mppi), input="command", reads=_MPPI),
     Target(
@@ -175,15 +181,16 @@ def export_model(
     """
     check_arguments(export_model, locals())
     made = find_target(target)
-    steers, model = model.steers, without_force(for_target(model, made))
-    model.refuse_throttle("exported files")
-    if steers and target == "diff-drive":
-        raise ModelError("a robot that steers has no diff_drive_controller", advice="export another file")
+    part = without_force(for_target(model, made))
+    part.refuse_throttle("exported files")
+    if model.steers and not made.steers:  # as either input says, whichever the file is of
+        what = made.file_name.removesuffix(".yaml")
+        raise ModelError(f"a robot that steers has no {what}", advice="export another file")
     if not made.sideways:
-        refuse_sideways(model, f"files of {target}")
+        refuse_sideways(part, f"files of {target}")
     if not force:
-        refuse_bad_verdict(model)
-    return made.make(model, options or ExportOptions(), origin_lines(model, name))
+        refuse_bad_verdict(part)
+    return made.make(part, options or ExportOptions(), origin_lines(part, name))
 
 
 def for_target(model: Model, target: Target) -> Model:

@@ -92,7 +92,7 @@ def turns_otherwise(run: Run, rows: Floats) -> bool:
     if len(rows) < 2:
         return False
     settings, none = _core.StreamSettings(), np.empty((0, 4))
-    settings.unknown_after, settings.horizons = UNKNOWN_AFTER, []
+    settings.unknown_after = UNKNOWN_AFTER
     commands, wheels = (none if given is None else given.rows() for given in (run.commands, run.wheels))
     recording = _core.Recording(commands, wheels, np.empty((0, 3)), np.empty((0, 7)), {COLUMN: rows})
     return any(otherwise(row) for row in _core.motion_evidence(settings, [recording]).gyro_turns)

@@ -72,7 +72,7 @@ def _evidence(
     streams: tuple[tuple[Inputs | None, Inputs | None, Poses], ...], unknown_after: float
 ) -> _core.MotionEvidence:
     settings = _core.StreamSettings()
-    settings.unknown_after, settings.horizons = unknown_after, []
+    settings.unknown_after = unknown_after
     return _core.motion_evidence(settings, [_recording(*each) for each in streams])
 
 

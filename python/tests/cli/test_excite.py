@@ -16,7 +16,7 @@ from sample_models import make_model, named
 from slipwise import _core
 from slipwise.cli.excite import _known
 from slipwise.excitation import CommandSpace, prior_knowledge
-from slipwise.models import Model
+from slipwise.models import Model, load_model
 
 Slipwise = Callable[..., Result]
 QUICK = ("--area", "20x20", "--minutes", "0.4")
@@ -90,5 +90,5 @@ def test_of_a_model_that_learned_nothing_the_prior_is_what_is_known(folder: Path
     assert not model.content.parameters
     Model(model.content.model_copy(update={"input": "command"})).save(folder / "nothing.yaml")
     given = {"speed": 1.0, "yaw_rate": 1.0}
-    _, known = _known((folder / "nothing.yaml", None), None, given)
+    _, known = _known((load_model(folder / "nothing.yaml"), None), None, given)
     assert known.names == prior_knowledge(CommandSpace(1.0, 1.0)).names

@@ -14,6 +14,7 @@ from sample_models import BODY, Made, make_model, named
 from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.export import ExportOptions, export_model
+from slipwise.models import Model
 from slipwise.prediction import predict
 
 LATE = replace(
@@ -214,8 +215,10 @@ def test_a_vehicle_that_does_not_turn_as_steered_is_refused() -> None:
 
 
 def test_a_robot_that_steers_is_no_diff_drive() -> None:
-    car = make_model(replace(LATE, wheelbase=0.5))
-    with pytest.raises(ModelError, match="no diff_drive_controller"):
-        export_model(car, "diff-drive", name="model.yaml", options=NEW)
+    car, wheels = make_model(replace(LATE, wheelbase=0.5)), make_model(named("edd-2"))
+    of_both = Model(car.content.model_copy(update={"other_input": wheels.content}))
+    for each in (car, of_both):
+        with pytest.raises(ModelError, match="no diff_drive_controller"):
+            export_model(each, "diff-drive", name="model.yaml", options=NEW)
     made = export_model(car, "mppi", name="model.yaml", options=NEW)
     assert made.values["FollowPath.motion_model"] == "ackermann"
