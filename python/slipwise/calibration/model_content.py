@@ -10,6 +10,7 @@ from importlib.metadata import version
 import numpy as np
 
 from slipwise import _core
+from slipwise.calibration.driven_curvature import driven_curvature
 from slipwise.calibration.judge import Judged
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import Posterior
@@ -57,7 +58,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         noise=_noise(learned, facts.settings),
         slip_disturbance=_slip_disturbance(learned.kept, facts.settings.segment_length(facts.input_name)),
         body_force=_body_force(motion, facts.settings),
-        range=_range(facts.range, learned),
+        range=_range(facts.range, learned, commands=facts.input_name == "command"),
         shares=_shares(learned, facts),
         weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
         provenance=schema.Provenance(
@@ -117,11 +118,14 @@ def _table(learned: Learned, settings: Settings) -> tuple[ParameterTable, list[f
     return table, [section.gain_v, section.gain_omega]
 
 
-def _range(inputs: schema.Range, learned: Learned) -> schema.Range:
+def _range(inputs: schema.Range, learned: Learned, *, commands: bool) -> schema.Range:
     """What the robot did: a car's commands are throttle and steering, and its curves make speeds of them."""
     car, body = learned.car, learned.body
     if car is None:
-        return inputs.model_copy(update={"body": body})
+        curvature = None
+        if learned.kept.motion.wheelbase and learned.evidence is not None:
+            curvature = driven_curvature(learned.evidence.windows, commands=commands)
+        return inputs.model_copy(update={"body": body, "curvature": curvature})
     speed = [float(np.interp(end, car.speed.at, car.speed.value)) for end in inputs.speed]
     fastest = max(map(abs, speed))
     tightest = [

@@ -122,6 +122,7 @@ def _wider(a: Range, b: Range) -> Range:
     return Range(
         **spans,
         sideways=_wider_span(a.sideways, b.sideways),
+        curvature=max((each for each in (a.curvature, b.curvature) if each is not None), default=None),
         slope=max(a.slope, b.slope),
         wheel_step=max(a.wheel_step, b.wheel_step),
         body=a.body and b.body and _wider_body(a.body, b.body),

@@ -137,6 +137,9 @@ class Range(Section):
     sideways: Span | None = None  # speed to the left, of inputs that have one [m/s]
     throttle: Span | None = None  # of a car; its speeds are then what its curves make of these
     steering: Span | None = None
+    curvature: NotNegative | None = (
+        None  # of the tightest curves, of a robot that steers; None: not known [1/m]
+    )
     slope: NotNegative  # steepest roll or pitch [rad], 0 where it was not measured
     wheel_step: NotNegative = 0.0  # between wheel speeds [s], 0 where there were none
     body: MeasuredBody | None = None  # None: an older slipwise wrote the file, or another estimator learned

@@ -42,7 +42,7 @@ class Limits:
 def limits_of(model: Model) -> Limits:
     """Return limits within which the model was learned; the curvature is that of full turning at half speed.
 
-    A robot that steers may turn no tighter than at full speed, since how far it was steered is not kept.
+    A robot that steers may turn no tighter than it did, or than at full speed where that is not known.
     Where the drive has learned limits, the tighter of the two hold; so that its ramps keep up with the
     commands, the acceleration is no more than it accelerates and brakes with.
 
@@ -67,6 +67,8 @@ def limits_of(model: Model) -> Limits:
             advice="give limits, or calibrate on a drive that has both",
         )
     curvature = (1.0 if model.steers else 2.0) * yaw_rate / speed
+    if model.steers:
+        curvature = max(curvature, model.content.range.curvature or 0.0)
     return Limits(speed=speed, yaw_rate=yaw_rate, curvature=curvature, acceleration=acceleration)
 
 

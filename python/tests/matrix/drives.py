@@ -147,6 +147,10 @@ def excite(learned: Learned) -> None:
     given = situation.given(planned)
     if situation.robot.kind == "throttle":
         assert np.abs(planned[:, 1:]).max() <= 1.0, "throttle or steering beyond 1"
+    if situation.robot.kind == "steering":
+        tightest = math.tan(situation.ranges[1][1]) / situation.robot.wheelbase
+        assert 0.75 * tightest < (learned.model.content.range.curvature or 0.0) <= tightest
+        assert np.abs(planned[:, 2]).max() > 0.7 * tightest * 0.7 * situation.ranges[0][1]
     driven = situation.driven(given, float(planned[-1, 0]) + 1.0)
     assert np.ptp(driven.pose[:, :2], axis=0).max() < 12.0, "it leaves the area"
     assert np.abs(planned[:, 1:]).max(axis=0).min() > 0.0, f"an axis of {names} is never driven"

@@ -8,6 +8,7 @@ import pytest
 from sample_models import Made, make_model, named
 
 from slipwise.errors import SettingsError
+from slipwise.models.model import Model
 from slipwise.planning.limits import ACCELERATION, DriveState, Limits, limits_of
 
 
@@ -52,6 +53,9 @@ def test_a_start_that_is_not_finite_is_refused() -> None:
             DriveState(**wrong)
 
 
-def test_a_robot_that_steers_turns_no_tighter_than_at_full_speed() -> None:
-    car = limits_of(make_model(made(speed=(0.0, 2.0), yaw_rate=(-0.5, 0.5), commands=True, wheelbase=1.2)))
-    assert car.curvature == pytest.approx(0.25)
+def test_a_robot_that_steers_turns_no_tighter_than_it_did_or_at_full_speed() -> None:
+    old = make_model(made(speed=(0.0, 2.0), yaw_rate=(-0.5, 0.5), commands=True, wheelbase=1.2))
+    assert limits_of(old).curvature == pytest.approx(0.25)
+
+    seen = old.content.model_copy(update={"range": old.content.range.model_copy(update={"curvature": 0.35})})
+    assert limits_of(Model(seen)).curvature == pytest.approx(0.35)
