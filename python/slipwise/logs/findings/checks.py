@@ -22,6 +22,7 @@ from slipwise.logs.findings.gyro_scale import GyroScale, GyroTurnsOtherwise
 from slipwise.logs.findings.headings import (
     BackwardPoses,
     ConstantHeading,
+    FoldedHeading,
     HeadingJump,
     LostHeading,
     OtherUnit,
@@ -65,6 +66,7 @@ THEN: tuple[Check, ...] = (
     ConstantHeading(),
     HeadingJump(),
     SensorOffCentre(),
+    FoldedHeading(),
     LostHeading(),
     RepeatedWheels(),
     WheelSize(),

@@ -22,7 +22,8 @@ _WINDOW = 1.0  # [s] between the poses that are compared
 _LONGEST = 2.5  # [s] beyond which they are not
 _KNOWN = 0.9  # of a step, inputs must be known
 _LONG = 900.0  # [s] of a run that are looked at
-_KEPT = 0.9  # of the windows, by the size of what is left; the others may be jumps of poses
+_KEPT = 0.9  # of the windows, by the size of what is left; the others may be jumps of poses,
+_JUMP = 15.0  # times the usual size of what is left, which bend no fit
 _LAGS = (0.0, 0.1, 0.2, 0.4, 0.8, 1.6)  # [s] of a body that follows late
 _DELAYS = (-0.4, -0.2, 0.0, 0.2, 0.4, 0.8)  # [s]
 
@@ -107,12 +108,16 @@ def driven_steps(whole: WholeLog, name: str) -> list[DrivenSteps]:
 
 
 def fit(columns: Numbers, measured: Numbers) -> tuple[float, Numbers]:
-    """Fit the sum of columns [G, C] that is nearest to what was measured, [G].
+    """Fit the sum of columns [G, C] that is nearest to what was measured, [G], jumps left out.
 
     Returns:
         the sum of the squares that is left, but for the largest, and the factors [C].
     """
     factors = np.linalg.lstsq(columns, measured, rcond=None)[0]
+    left = np.abs(measured - columns @ factors)
+    steady = left < _JUMP * np.median(left)
+    if steady.any() and not steady.all():
+        factors = np.linalg.lstsq(columns[steady], measured[steady], rcond=None)[0]
     squares = np.sort(np.abs(measured - columns @ factors) ** 2)[: int(np.ceil(_KEPT * len(measured)))]
     return float(squares.sum()), factors
 
