@@ -252,10 +252,25 @@ def capped(run: Run) -> Run:
 
 def answering_late(run: Run) -> Run:
     """Let everything happen 1.5 s later than it was commanded."""
-    if run.wheels is None or run.commands is None:
+    if run.wheels is None:
         return run
-    w, p = run.wheels, run.poses
-    return replace(run, wheels=replace(w, t=w.t + 1.5), poses=replace(p, t=p.t + 1.5))
+    return replace(run, wheels=replace(run.wheels, t=run.wheels.t + 1.5), poses=later(1.5)(run.poses))
+
+
+def stamping_late(run: Run) -> Run:
+    """Stamp commands 2 s after they were carried out."""
+    commanded = run.commands
+    return run if commanded is None else replace(run, commands=replace(commanded, t=commanded.t + 2.0))
+
+
+def sizes(column: str) -> Callable[[Inputs], Inputs]:
+    """Lose the sign of a speed or of the yaw rate."""
+    return lambda inputs: replace(inputs, **{column: np.abs(getattr(inputs, column))})
+
+
+def unsigned(p: Poses) -> Poses:
+    """Lose the sign of the heading, as an arc cosine does."""
+    return replace(p, yaw=np.abs(np.angle(np.exp(1j * p.yaw))))
 
 
 def jumping_ticks(i: Inputs) -> Inputs:
@@ -297,14 +312,14 @@ class Fault:
     unseen: tuple[str, ...] = ()  # logs that cannot show it: of robots that never reverse, or drive laps
 
 
-def of_wheels(change: Callable[[Inputs], Inputs], *kinds: str) -> Fault:
+def of_wheels(change: Callable[[Inputs], Inputs], *kinds: str, unseen: tuple[str, ...] = ()) -> Fault:
     """A fault of the wheels."""
-    return Fault(wheels(change), kinds, ("wheels",))
+    return Fault(wheels(change), kinds, ("wheels",), unseen)
 
 
-def of_commands(change: Callable[[Inputs], Inputs], *kinds: str) -> Fault:
+def of_commands(change: Callable[[Inputs], Inputs], *kinds: str, unseen: tuple[str, ...] = ()) -> Fault:
     """A fault of the commands."""
-    return Fault(commands(change), kinds, ("commands",))
+    return Fault(commands(change), kinds, ("commands",), unseen)
 
 
 def of_poses(change: Callable[[Poses], Poses], *kinds: str, unseen: tuple[str, ...] = ()) -> Fault:
@@ -341,6 +356,10 @@ FAULTS: dict[str, Fault] = {
     "stopped": Fault(stopped, ("does-not-move",)),
     "frozen localiser": Fault(frozen, ("frozen-poses",)),
     "teleporting poses": of_poses(teleported, "unreachable-poses", "implausible", "lost-heading"),
+    "heading without its sign": of_poses(unsigned, "lost-sign", "implausible"),
+    "wheels turn by size": of_wheels(sizes("omega"), "lost-sign", "implausible", unseen=ONE_SIDED),
+    "commands turn by size": of_commands(sizes("omega"), "lost-sign", unseen=ONE_SIDED),
+    "wheels drive by size": of_wheels(sizes("v"), "lost-sign", unseen=("simulated", "DS3")),
     "no heading": of_poses(lambda p: replace(p, yaw=0.0 * p.yaw), "constant-heading", "lost-heading"),
     "course for a heading": Fault(by_course, ("course-heading",), unseen=FORWARD),
     "sensor 1 m ahead": of_poses(off_centre, "sensor-off-centre"),
@@ -351,6 +370,7 @@ FAULTS: dict[str, Fault] = {
     "dead band": Fault(banded, ("dead-band",), ("commands", "wheels"), unseen=("DS3",)),
     "capped drive": Fault(capped, ("saturated",), ("commands", "wheels"), unseen=UNEVEN),
     "answers 1.5 s late": Fault(answering_late, ("late-answers",), ("commands", "wheels")),
+    "commands stamped 2 s late": Fault(stamping_late, ("early-answers",), ("commands", "wheels")),
     "ticks jump": Fault(wheels(jumping_ticks), ("reversal-jumps",), ("wheels",), unseen=("DS3",)),
     "multipath": Fault(poses(drifting), ("drifting-poses",), ("wheels",), unseen=NEVER_STANDS),
     "sensor leans back": of_poses(leaning(0.0, -0.17), "askew-attitude"),

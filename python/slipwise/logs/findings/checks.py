@@ -22,14 +22,14 @@ from slipwise.logs.findings.gyro_scale import GyroScale, GyroTurnsOtherwise
 from slipwise.logs.findings.headings import (
     BackwardPoses,
     ConstantHeading,
-    FoldedHeading,
     HeadingJump,
     LostHeading,
     OtherUnit,
     TurnedPoses,
     UnlikelySpeed,
 )
-from slipwise.logs.findings.late_answers import LateAnswers
+from slipwise.logs.findings.late_answers import EarlyAnswers, LateAnswers
+from slipwise.logs.findings.lost_sign import LostSign
 from slipwise.logs.findings.missing_turns import MissingTurns
 from slipwise.logs.findings.out_of_order import OutOfOrder
 from slipwise.logs.findings.plausibility import ENOUGH, ENOUGH_TURN, Implausible, UnreachablePoses
@@ -53,7 +53,7 @@ from slipwise.logs.motion_windows import evidence_of
 _LONG = 4  # times as many windows suffice of a robot that hardly turns, or only turns
 
 #: What else looks wrong follows from these.
-FIRST: tuple[Check, ...] = (NotSteered(), DeadWheel(), Implausible(), UnreachablePoses())
+FIRST: tuple[Check, ...] = (NotSteered(), DeadWheel(), LostSign(), Implausible(), UnreachablePoses())
 #: In the order in which they are looked for: what explains others comes before them.
 THEN: tuple[Check, ...] = (
     UnlikelySpeed(),
@@ -66,7 +66,6 @@ THEN: tuple[Check, ...] = (
     ConstantHeading(),
     HeadingJump(),
     SensorOffCentre(),
-    FoldedHeading(),
     LostHeading(),
     RepeatedWheels(),
     WheelSize(),
@@ -89,6 +88,7 @@ WHOLE: tuple[Check, ...] = (
     DeadBand(),
     Saturated(),
     LateAnswers(),
+    EarlyAnswers(),
     Overridden(),
     FrozenPoses(),
     TowedPoses(),
@@ -110,6 +110,7 @@ OF_STREAM: tuple[Check, ...] = (
     EchoedCommands(),
     Saturated(),
     LateAnswers(),
+    EarlyAnswers(),
     Overridden(),
     FrozenPoses(),
     TowedPoses(),

@@ -33,9 +33,7 @@ _JUMP = 0.9  # mean length of the two courses before and after a jump
 _LEAST_PART = 0.15  # of the windows, before and after a jump
 _CERTAIN = 3.0  # standard errors of the angle between the two courses, beyond `_TURNED`
 
-_TURNS = 0.2  # [rad] by inputs and poses, in a window that tells to which side it turns
-_FOLDED = 0.1  # of such windows turn to the other side,
-_AS_FAR, _MOST = 1.5, 0.6  # times as far at most, and so do most of them
+
 _ASKEW = math.radians(10.0)  # from here on a sideways way is said, which may be slip; real logs have 8
 _ENOUGH_ASKEW = 20  # windows for that
 _SURE = 5.0  # its standard deviations
@@ -252,36 +250,6 @@ class HeadingJump(Check):
         )
 
 
-class FoldedHeading(Check):
-    """A heading that turns as far as the robot does, now to the one side and now to the other."""
-
-    kind, family = "folded-heading", "poses"
-    means = "the heading lost its sign, or half of its circle: an absolute value, an arc cosine, an arc sine"
-    shows = "of windows that turn, a tenth or more go the other way, by as much"
-    cure = "`yaw = atan2(2 (w z + x y), 1 - 2 (y y + z z))`"
-    explained_by = ("does-not-move", "parent-twist", "course-heading")
-
-    def look(self, seen: Seen) -> Finding | None:
-        """Compare what turns along with what turns against the inputs."""
-        w = seen.windows
-        turns = np.minimum(np.abs(w.turn), np.abs(w.rotation)) > _TURNS
-        ratio = w.turn[turns] / w.rotation[turns]
-        along, against = np.abs(ratio[ratio > 0.0]), np.abs(ratio[ratio < 0.0])
-        if seen.positions or min(len(along), len(against)) < max(_ENOUGH, _FOLDED * len(ratio)):
-            return None
-        usual = float(np.median(along))
-        as_far = [np.abs(np.log(side / usual)) < math.log(_AS_FAR) for side in (along, against)]
-        if min(side.mean() for side in as_far) < _MOST:
-            return None
-        part = len(against) / len(ratio)
-        return self.found(
-            f"in {100.0 * part:.0f} % of the turns the heading of the poses turns as far as the "
-            f"{seen.words.name} do, but to the other side: it lost its sign, or half of its circle",
-            "Make the heading of atan2(2 (w z + x y), 1 - 2 (y y + z z)), not of acos, asin or abs.",
-            evidence=part,
-        )
-
-
 class LostHeading(Check):
     """A heading that does not go with the course."""
 
@@ -289,14 +257,7 @@ class LostHeading(Check):
     means = "the heading does not go with the course: random, or of a localiser that is lost"
     shows = "courses agree with headings along no axis (mean length below 0.4)"
     cure = "another source of the heading, or positions alone (`--set live.positions=true`)"
-    explained_by = (
-        "does-not-move",
-        "parent-twist",
-        "course-heading",
-        "constant-heading",
-        "heading-jump",
-        "folded-heading",
-    )
+    explained_by = ("does-not-move", "parent-twist", "course-heading", "constant-heading", "heading-jump")
 
     def look(self, seen: Seen) -> Finding | None:
         """Look at the axes along which poses move."""

@@ -79,6 +79,7 @@ class ClockOffset(Check):
             f"{abs(offset):.1f} s {way}: their clocks are apart, or one waits in a queue{late}",
             "Give --pose-clock-offset auto, and stamp poses when they are measured.",
             evidence=offset,
+            spoils=name == "command" and offset > 0.0,  # no drive answers before it is commanded
         )
 
 

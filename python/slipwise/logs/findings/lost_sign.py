@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Finds motion that lost its sign: speeds, yaw rates or headings that go as far, but not always that way."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from slipwise.logs.findings.driven_windows import MOST_TURN
+from slipwise.logs.findings.finding import Check, Finding
+
+if TYPE_CHECKING:
+    from slipwise.logs.findings.seen import Seen
+    from slipwise.logs.log import Floats
+
+_TURNS, _MOVES = 0.2, 0.1  # rad and m by inputs and poses, in a window that tells which way it goes
+_FEWEST, _PART = 6, 0.1  # of such windows that go the other way,
+_TIMES = 3  # in some turns; a frame that is mirrored from some time on has one,
+_AS_FAR, _MOST = 1.5, 0.6  # times as far at most, and so do most of them
+
+
+class LostSign(Check):
+    """Motion that goes as far as the inputs say, now this way and now the other."""
+
+    kind, family = "lost-sign", "signs and units"
+    means = "a speed, a yaw rate or the heading lost its sign: an absolute value, an arc cosine, an arc sine"
+    shows = "of windows that move or turn, a tenth and more go the other way, most of them as far"
+    cure = "record signed speeds; `yaw = atan2(2 (w z + x y), 1 - 2 (y y + z z))`"
+
+    def look(self, seen: Seen) -> Finding | None:
+        """Compare turns, then ways along the heading."""
+        w, words = seen.windows, seen.words
+        part = _other_way(w.turn, w.rotation, _TURNS)
+        if part and _one_sided(w.rotation):
+            return self._of_input(f"the {words.name} turn to one side alone", "yaw rate", part)
+        if part and not seen.positions:
+            return self.found(
+                f"in {100.0 * part:.0f} % of the turns the heading of the poses turns as far as the "
+                f"{words.name} do, but to the other side: it lost its sign, or half of its circle",
+                "Make the heading of atan2(2 (w z + x y), 1 - 2 (y y + z z)), not of acos, asin or abs.",
+                evidence=part,
+            )
+        straight = (np.abs(w.turn) < MOST_TURN) & (np.abs(w.forward) > np.abs(w.sideways))
+        way = (w.distance * np.cos(w.course_ahead(seen.sensor_yaw)))[straight]
+        part = 0.0 if seen.positions else _other_way(way, w.forward[straight], _MOVES)
+        if part and _one_sided(w.forward[straight]):
+            return self._of_input(f"the {words.name} drive one way alone", "speed", part)
+        return None
+
+    def _of_input(self, what: str, lost: str, part: float) -> Finding:
+        return self.found(
+            f"{what}, and in {100.0 * part:.0f} % of windows the poses go the other: the {lost} lost its sign",
+            f"Record the {lost} with its sign: forwards and to the left is positive.",
+            evidence=part,
+        )
+
+
+def _other_way(done: Floats, said: Floats, least: float) -> float:
+    """Return the part of windows that go the other way than is said, as far where that has both; or 0."""
+    clear = np.minimum(np.abs(done), np.abs(said)) > least
+    ratio = done[clear] / said[clear]
+    along, against = np.abs(ratio[ratio > 0.0]), np.abs(ratio[ratio < 0.0])
+    changes = np.count_nonzero(np.diff(np.sign(ratio)))
+    if min(len(along), len(against)) < max(_FEWEST, _PART * len(ratio)) or changes < _TIMES:
+        return 0.0
+    usual = float(np.median(along))
+    as_far = [np.abs(np.log(side / usual)) < math.log(_AS_FAR) for side in (along, against)]
+    sure = _one_sided(said) or min(side.mean() for side in as_far) > _MOST
+    return len(against) / len(ratio) if sure else 0.0
+
+
+def _one_sided(said: Floats) -> bool:
+    return bool((said >= 0.0).all() or (said <= 0.0).all())
