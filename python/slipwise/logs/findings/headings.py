@@ -23,6 +23,7 @@ _TURNED = math.radians(30.0)  # a mean course further off than this is no slip; 
 _SQUARE = math.radians(20.0)  # a frame that is turned by so little more or less than a right angle
 _SLOWEST = {"commands": 0.2, "wheels": 0.4}  # of the inputs' speed; spinning wheels lose less, limits more
 _FASTEST = 3.0  # the same; nothing pushes a robot so fast
+_SAME = 1.2  # times as fast at most, as commands and wheels that agree
 _ENOUGH_OF_EACH = 20  # windows, slow and fast ones together
 _LEAST = 0.05  # [m] by the commands, in a window
 _ALIKE = 0.1  # of the speed: what slow and fast commands differ by at most, of a robot that answers late
@@ -139,6 +140,10 @@ class UnlikelySpeed(Check):
         if not _agree(driven):
             return None
         scale = float(np.median(driven.scale))
+        if words.name == "commands" and _agree(seen.other_driven):
+            by_wheels = float(np.median(seen.other_driven.scale))
+            if abs(math.log(by_wheels / scale)) < math.log(_SAME):  # the wheels do as they are commanded
+                words, scale = seen.other_words, by_wheels
         if _SLOWEST[words.name] <= scale <= _FASTEST:
             return None
         units = likely_speeds(scale)

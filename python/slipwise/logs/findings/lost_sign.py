@@ -51,7 +51,7 @@ class LostSign(Check):
 
     def _of_input(self, what: str, lost: str, part: float) -> Finding:
         return self.found(
-            f"{what}, and in {100.0 * part:.0f} % of windows the poses go the other: the {lost} lost its sign",
+            f"{what}, and in {100.0 * part:.0f} % the poses go the other: the {lost} lost its sign",
             f"Record the {lost} with its sign: forwards and to the left is positive.",
             evidence=part,
         )

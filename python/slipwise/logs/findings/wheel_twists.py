@@ -49,22 +49,37 @@ class DeadWheel(Check):
     def of(cls, w: MotionWindows) -> Finding | None:
         """Look at the curvature of the wheels' twist."""
         moving = _fast(np.abs(w.forward)) & (w.distance > _LEAST)
-        if int(moving.sum()) < _ENOUGH:
-            return None
         wheels, poses = w.rotation[moving] / w.forward[moving], w.turn[moving] / w.forward[moving]
-        curve = float(np.median(wheels))
-        if not _CURVES[0] < abs(curve) < _CURVES[1] or _spread(wheels) > _TIGHT * abs(curve):
-            return None
-        against = float((poses * curve < 0.0).mean())
-        if against < _OTHERWISE and abs(float(np.median(poses))) > _OTHERWISE * abs(curve):
+        alike = np.abs(np.diff(wheels)) <= 2.0 * _TIGHT * np.abs(wheels[1:])
+        ends = np.concatenate(([0], np.flatnonzero(~alike) + 1, [len(wheels)]))
+        longest = int(np.argmax(np.diff(ends)))
+        curve = _stuck(wheels, poses)
+        since = ""
+        if curve is None:
+            part = slice(ends[longest], ends[longest + 1])
+            curve = _stuck(wheels[part], poses[part])
+            since = f" from {w.since[moving][part][0]:.0f} s on" if curve else ""
+        if curve is None:
             return None
         side = "left" if curve > 0.0 else "right"
         return cls.found(
-            f"the wheels turn by {curve:.3g} rad for each metre whatever the robot does: the {side} wheel "
-            f"stands still in them (of wheels {2.0 / abs(curve):.2f} m apart)",
+            f"the wheels turn by {curve:.3g} rad for each metre{since}, whatever the robot does: the {side} "
+            f"wheel stands still in them (of wheels {2.0 / abs(curve):.2f} m apart)",
             f"Look at the encoder of the {side} wheel, and at the names of the joints.",
             evidence=curve,
         )
+
+
+def _stuck(wheels: Floats, poses: Floats) -> float | None:
+    """Return the one curvature [1/m] of wheels in windows in which poses have others; None."""
+    if len(wheels) < _ENOUGH:
+        return None
+    curve = float(np.median(wheels))
+    if not _CURVES[0] < abs(curve) < _CURVES[1] or _spread(wheels) > _TIGHT * abs(curve):
+        return None
+    against = float((poses * curve < 0.0).mean())
+    turns_so = against < _OTHERWISE and abs(float(np.median(poses))) > _OTHERWISE * abs(curve)
+    return None if turns_so else curve
 
 
 class ParentTwist(Check):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +23,7 @@ from contradictory_logs import (
     with_poses,
     with_runs,
 )
-from faulty_logs import off_centre
+from faulty_logs import found_in, off_centre, sides, wheels, with_fault
 from sample_logs import Drive, steady_run
 
 from slipwise import _core
@@ -31,6 +32,7 @@ from slipwise.logs.findings.checks import OF_STREAM, WHOLE, findings_in, finding
 from slipwise.logs.findings.command_stops import CommandTimeout
 from slipwise.logs.findings.seen import WholeLog
 from slipwise.logs.held import UNKNOWN_AFTER
+from slipwise.logs.log import Floats
 from slipwise.logs.open_log import cut_to_span
 
 HALF = 30.0  # s
@@ -297,3 +299,23 @@ def test_no_real_robot_contradicts_its_inputs(real_log_dir: Path) -> None:
                 every = (*findings_in(seen), *ended)
                 found += [(path.name, end, name, each.sentence) for each in every if each.spoils]
     assert found == []
+
+
+def test_a_wheel_that_dies_on_the_way_is_found() -> None:
+    """What it says of the whole drive is no twist of one wheel, and its last two minutes are not either."""
+
+    def dies(left: Floats, right: Floats, t: Floats) -> tuple[Floats, Floats]:
+        return np.where(t > t[0] + 70.0, 0.0, left), right
+
+    sound = sound_log(replace(SKID_STEERED, seconds=150.0))
+    found = [each for each in found_in(with_fault(sound, wheels(sides(dies)))) if each.kind == "dead-wheel"]
+    assert len(found) == 1
+    assert re.search(r"from (6[5-9]|7\d|8\d) s on.* left wheel stands still", found[0].sentence)
+
+
+@pytest.mark.parametrize("name", ["wheel", "command"])
+def test_poses_in_feet_spoil_both_inputs_that_agree(name: str) -> None:
+    feet = with_fault(
+        SOUND, lambda run: replace(run, poses=replace(run.poses, x=3.28 * run.poses.x, y=3.28 * run.poses.y))
+    )
+    assert "unlikely-speed" in {each.kind for each in findings_of(feet, name) if each.spoils}
