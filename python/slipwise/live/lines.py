@@ -160,6 +160,8 @@ def _content(output: Output) -> dict[str, object]:
             "frame": output.frame,
             "since_pose": output.since_pose,
         }
+    if isinstance(output, Path) and output.why:
+        return {"prediction": None, "why": output.why}
     if isinstance(output, Path):
         return {
             "prediction" if output.asked else "predicted_path": output.poses.tolist(),

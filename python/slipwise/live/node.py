@@ -202,6 +202,8 @@ class LiveNode:
             said.note(t, answer.message)
         if request.answer is not None:
             request.answer(answer)
+        elif not answer.success and request.kind == "predict":
+            self._publish(Path.none(answer.message))
 
     def _answer_to(self, request: Request) -> Answer:
         parts, t = self._parts, self._parts.intake.newest

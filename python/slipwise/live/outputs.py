@@ -41,6 +41,12 @@ class Path:
     poses: Floats  # [N, 3] x, y [m], yaw [rad] in that frame
     covariance: Floats  # [N, 3, 3]
     asked: bool = False  # on request
+    why: str = ""  # there is none
+
+    @classmethod
+    def none(cls, why: str) -> Path:
+        """Return the answer to a request that has none."""
+        return cls(np.empty(0), "", np.empty((0, 3)), np.empty((0, 3, 3)), asked=True, why=why)
 
 
 @dataclass(frozen=True)

@@ -135,7 +135,8 @@ class RosMessages:
             case Odometry():
                 return self._odometry(output, wanted)
             case Path():
-                return self._path(output) if output.asked or wanted("predicted_path") else []
+                unasked = not output.asked and wanted("predicted_path")
+                return self._path(output) if unasked or (output.asked and not output.why) else []
             case Status():
                 return self._status(output, wanted)
             case SurfaceNow():

@@ -24,7 +24,7 @@ from slipwise.calibration import Settings
 from slipwise.calibration.live_table import LiveTable
 from slipwise.errors import LogError
 from slipwise.live.build import Built, build_node
-from slipwise.live.lines import MOST_BYTES
+from slipwise.live.lines import MOST_BYTES, line_of
 from slipwise.live.node import WAITED
 from slipwise.live.outputs import Output, Status
 from slipwise.live.pipe import Pipe, bounded_lines
@@ -124,10 +124,14 @@ def test_whatever_a_sample_raises_is_counted_and_said_once(monkeypatch: pytest.M
     assert built.learning.segments > 3
 
 
-def test_requests_that_cannot_be_answered_are_counted() -> None:
+def test_requests_that_cannot_be_answered_are_counted_and_each_says_why() -> None:
     script = [*driven(replace(SLIP, seconds=5.0)), *[Request("predict", text) for text in ("", "[]", "7")]]
-    built, _ = run_node(script)
+    built, transport = run_node(script)
     assert built.said.counts["a prediction that cannot be made"] == 3
+    answers = [json.loads(line_of(each)) for each in transport.outputs]
+    refused = [each for each in answers if "prediction" in each]
+    assert [each["prediction"] for each in refused] == [None] * 3
+    assert all("cannot be made" in each["why"] for each in refused)
 
 
 def test_distinct_wrong_lines_take_no_memory() -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from slipwise.logs.findings.driven_windows import MOST_TURN
 from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.findings.plausibility import correlation
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import Seen
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _TURNS, _MOVES = 0.2, 0.1  # rad and m by inputs and poses, in a window that tells which way it goes
 _FEWEST, _PART = 6, 0.1  # of such windows that go the other way,
 _TIMES = 3  # in some turns; a frame that is mirrored from some time on has one,
+_LATE, _SO, _MORE = 3, 0.5, 0.2  # windows by which a robot may be late, and how they correlate then
 _AS_FAR, _MOST = 1.5, 0.6  # times as far at most, and so do most of them
 
 
@@ -65,10 +67,18 @@ def _other_way(done: Floats, said: Floats, least: float) -> float:
     changes = np.count_nonzero(np.diff(np.sign(ratio)))
     if min(len(along), len(against)) < max(_FEWEST, _PART * len(ratio)) or changes < _TIMES:
         return 0.0
+    if _late(done, said):
+        return 0.0
     usual = float(np.median(along))
     as_far = [np.abs(np.log(side / usual)) < math.log(_AS_FAR) for side in (along, against)]
     sure = _one_sided(said) or min(side.mean() for side in as_far) > _MOST
     return len(against) / len(ratio) if sure else 0.0
+
+
+def _late(done: Floats, said: Floats) -> bool:
+    """Say whether windows do what was said in one before rather than what is."""
+    now = correlation(done, said)
+    return max(correlation(done[k:], said[:-k]) for k in range(1, _LATE + 1)) > max(_SO, now + _MORE)
 
 
 def _one_sided(said: Floats) -> bool:
