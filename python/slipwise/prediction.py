@@ -122,7 +122,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         model: a learned model.
         commands: held inputs of the kind that the model was learned from: `Inputs`, or rows of
             (t [s], v [m/s], omega [rad/s]), [N, 3]; of a robot that drives sideways (t, v, vy, omega),
-            [N, 4], of a car (t, throttle, steering). Those before `start` matter where there is lag or delay.
+            [N, 4], of a car (t, throttle, steering). A steering angle is given as the yaw rate it asks for,
+            v tan(angle) / wheelbase. Those before `start` matter where there is lag or delay.
         horizon: how far to predict [s]; poses are returned every `PERIOD` and at the horizon.
         start: when the prediction starts [s], by the clock of the inputs; by default at the first command.
             The robot is at the start of the path then. A pose that was stamped at that moment may be older:

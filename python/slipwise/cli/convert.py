@@ -57,6 +57,7 @@ def convert(
       slipwise convert run.mcap -o shared.parquet --anonymise --licence CC-BY-4.0 --robot "Husky A200"
       slipwise convert model.yaml -o model-0.2.yaml
     """  # noqa: D301
+    from slipwise.calibration.same_log import refuse_same_log
     from slipwise.cli.document import head, log_part
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
@@ -74,7 +75,9 @@ def convert(
     files = {"log": output} | request.files(output)
     refuse_unwritable(*files.values(), out.written_file, inputs=(*logs, *log_options.files, settings))
     with progress_bar("reading") as update:
-        log = request.without_names(open_log(*logs, options=log_options))
+        read = open_log(*logs, options=log_options)
+        refuse_same_log(read)
+        log = request.without_names(read)
         update("writing", 0.2)
         left_out = log.left_out + save_log(log, output)
         request.write_beside(output, update)

@@ -246,6 +246,9 @@ def model_of_replay(built: Built, log: Log | None) -> Model:
         LogError: nothing was learned.
     """
     if not built.learning.learner.learned:
-        raise LogError("nothing was learned: no model is written", advice="drive for some seconds first")
+        advice = "drive for some seconds first"
+        if most := built.said.counts.most_common(1):
+            advice += f"; {most[0][1]} times a measurement was left out: {most[0][0]}"
+        raise LogError("nothing was learned: no model is written", advice=advice)
     whole = None if built.goes_on else log
     return built.learning.learner.judged_model(log=whole)[0]

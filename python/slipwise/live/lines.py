@@ -36,8 +36,8 @@ class LineReader:
     """Turns lines into samples: a line is a row of a tidy log, and read as one.
 
     Columns are those of a tidy log; an empty cell, or none, is no measurement. A JSON line may ask, too:
-    {"apply": true} or {"predict": {"horizon": 2, "commands": [[t, v, omega], ...]}}; and it may say what the
-    ground is: {"terrain": "sand"}, or {"terrain_changed": true}.
+    {"apply": true} or {"predict": {"horizon": 2, "commands": [[t, v, omega], ...]}}, yaw rates of what steers
+    too; and it may say what the ground is: {"terrain": "sand"}, or {"terrain_changed": true}.
 
     Args:
         options: how rows are read.

@@ -34,6 +34,7 @@ POSE_TOPIC = "/ground_truth/pose"
 
 _RUN_GAP_NS = 10_000_000_000  # between runs whose own times do not keep them apart
 _LATEST = 2**31 - 1  # s; a header's stamp holds no later second
+_IN_TWISTS = ("cmd_vx", "cmd_vy")  # columns that the twists of commands hold
 _LATEST_NS = _LATEST * 1_000_000_000
 _UNKNOWN_VARIANCE = 1e6  # of an odometry's unmeasured pose
 
@@ -101,7 +102,8 @@ def _not_written(log: Log) -> tuple[LeftOut, ...]:
         for name, other in run.others.items():
             counts[f"poses of the source {name}"] += len(other)
         for name, values in run.extra.items():
-            counts[f"cells of the column {name}"] += 0 if name == "t" else _filled(values)
+            held = name == "t" or (run.commands is not None and name in _IN_TWISTS)
+            counts[f"cells of the column {name}"] += 0 if held else _filled(values)
     return tuple(
         LeftOut(f"{what} that a bag does not hold; a table does", count, log.runs[0].name, "not-written")
         for what, count in counts.items()

@@ -37,6 +37,7 @@ def copy(log: Path) -> Path:
 
 def test_a_log_given_twice_is_refused(slipwise: Slipwise, log: Path, copy: Path) -> None:
     calls = [("calibrate",), ("calibrate", "--memory"), ("evaluate",), ("evaluate", "--memory")]
+    calls += [("convert", "-o", log.with_name("both.csv"))]
     for call in calls:
         same = slipwise(*call, log, log)
         assert same.code == 2
