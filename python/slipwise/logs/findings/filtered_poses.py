@@ -59,8 +59,8 @@ class FilteredPoses(Check):
         *("unrelated", "implausible", "towed-poses"),
     )
     means = "the poses are of a filter that takes in the wheels' odometry and is corrected slowly"
-    shows = "over a second they follow the inputs by another share (2 %) than in the long run, as filters do"
-    cure = "record what the filter is corrected with: the poses of the lidar, the receiver or the localiser"
+    shows = "over a second they follow the inputs by another share (2 %) than in the long run"
+    cure = "record what corrects it: poses of the lidar, the receiver or the localiser"
 
     def look_at(self, whole: WholeLog) -> Finding | None:
         """Compare turns, and where there are wheels ways, with those of bodies and of such filters."""

@@ -57,8 +57,8 @@ class EarlyAnswers(Check):
 
     kind, family = "early-answers", "clocks"
     of_input = True
-    means = "commands are stamped after they were carried out: another clock, or the stamps of their receipt"
-    shows = "wheels and commands agree best with wheels 0.3 s later and more, by 0.05"
+    means = "commands are stamped after they were carried out"
+    shows = "both agree best with wheels 0.3 s later and more"
     cure = "stamp commands when they are sent; else `--input wheel`"
 
     def look_at(self, whole: WholeLog) -> Finding | None:

@@ -28,7 +28,7 @@ class LostSign(Check):
 
     kind, family = "lost-sign", "signs and units"
     means = "a speed, a yaw rate or the heading lost its sign: an absolute value, an arc cosine, an arc sine"
-    shows = "of windows that move or turn, a tenth and more go the other way, most of them as far"
+    shows = "a tenth of the windows and more go the other way, most of them as far"
     cure = "record signed speeds; `yaw = atan2(2 (w z + x y), 1 - 2 (y y + z z))`"
 
     def look(self, seen: Seen) -> Finding | None:

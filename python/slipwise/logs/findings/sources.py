@@ -48,12 +48,12 @@ class TwoSources(Check):
     kind, family, spoils = "two-sources", "topics", False
     hidden_by = ("wheel-spikes",)  # that come often look like a second source
     means = (
-        "two nodes publish on one topic: two robots, two localisers, a controller and a filter, a driver and "
-        "one that idles (from such commands no model is good)"
+        "two nodes publish on one topic: two robots, two localisers, a controller and a filter, or a driver "
+        "and one that idles (no model is good)"
     )
     shows = (
-        "values take turns between two courses, each followed five times as closely as the other is near; "
-        "exact zeros between commands that come on time and are alike, and the robot goes on"
+        "values take turns between two courses; exact zeros between commands that are alike, and the robot "
+        "goes on"
     )
     cure = "`ros2 topic info -v` names them: remap one"
 
