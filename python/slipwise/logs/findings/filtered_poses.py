@@ -56,7 +56,7 @@ class FilteredPoses(Check):
     kind, family = "filtered-poses", "poses"
     hidden_by = (
         *("two-sources", "repeated-wheels", "course-heading", "heading-jump"),
-        *("unrelated", "implausible", "towed-poses"),
+        *("unrelated", "implausible", "lost-sign", "towed-poses"),
     )
     means = "the poses are of a filter that takes in the wheels' odometry and is corrected slowly"
     shows = "over a second they follow the inputs by another share (2 %) than in the long run"

@@ -21,7 +21,7 @@ class TowedPoses(Check):
     """Headings that turn as those of a trailer behind the robot do."""
 
     kind, family = "towed-poses", "poses"
-    hidden_by = ("two-sources", "course-heading", "unrelated", "implausible")
+    hidden_by = ("two-sources", "course-heading", "unrelated", "implausible", "lost-sign")
     means = "the pose sensor is on a trailer, or its heading is a course over the last metres of the way"
     shows = "a trailer leaves 5 % of the turns at most, and a body that turns late in time 5 times as much"
     cure = "put the sensor on the robot; where the heading is a course, leave `yaw` out: positions are used"
