@@ -268,11 +268,6 @@ def sizes(column: str) -> Callable[[Inputs], Inputs]:
     return lambda inputs: replace(inputs, **{column: np.abs(getattr(inputs, column))})
 
 
-def unsigned(p: Poses) -> Poses:
-    """Lose the sign of the heading, as an arc cosine does."""
-    return replace(p, yaw=np.abs(np.angle(np.exp(1j * p.yaw))))
-
-
 def jumping_ticks(i: Inputs) -> Inputs:
     """Count some ticks more wherever the wheels begin to turn the other way."""
     moves = np.flatnonzero(np.abs(i.v) > 0.02)
@@ -356,9 +351,13 @@ FAULTS: dict[str, Fault] = {
     "stopped": Fault(stopped, ("does-not-move",)),
     "frozen localiser": Fault(frozen, ("frozen-poses",)),
     "teleporting poses": of_poses(teleported, "unreachable-poses", "implausible", "lost-heading"),
-    "heading without its sign": of_poses(unsigned, "lost-sign", "implausible"),
-    "wheels turn by size": of_wheels(sizes("omega"), "lost-sign", "implausible", unseen=ONE_SIDED),
-    "commands turn by size": of_commands(sizes("omega"), "lost-sign", unseen=ONE_SIDED),
+    "heading without its sign": of_poses(
+        lambda p: replace(p, yaw=np.arccos(np.cos(p.yaw))), "lost-sign", "implausible", unseen=ONE_SIDED
+    ),
+    "wheels turn by size": of_wheels(sizes("omega"), "lost-sign", "implausible", unseen=UNEVEN),
+    "commands turn by size": of_commands(
+        sizes("omega"), "lost-sign", unseen=(*UNEVEN, "grass_7_29_14h46s15")
+    ),
     "wheels drive by size": of_wheels(sizes("v"), "lost-sign", unseen=("simulated", "DS3")),
     "no heading": of_poses(lambda p: replace(p, yaw=0.0 * p.yaw), "constant-heading", "lost-heading"),
     "course for a heading": Fault(by_course, ("course-heading",), unseen=FORWARD),

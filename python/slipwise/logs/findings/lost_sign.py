@@ -17,9 +17,11 @@ if TYPE_CHECKING:
     from slipwise.logs.log import Floats
 
 _TURNS, _MOVES = 0.2, 0.1  # rad and m by inputs and poses, in a window that tells which way it goes
-_FEWEST, _PART = 6, 0.1  # of such windows that go the other way,
+_FEWEST, _PART = 6, 0.1  # of such windows that go the other way; where inputs go both ways,
+_FEWEST_OF_BOTH, _LATE_PART = 10, 0.25  # more, and of commands, which a robot follows late, a larger part
 _TIMES = 3  # in some turns; a frame that is mirrored from some time on has one,
 _LATE, _SO, _MORE = 3, 0.5, 0.2  # windows by which a robot may be late, and how they correlate then
+_FOLLOWS, _FOLLOWS_SOME = 0.7, 0.3  # correlation of the sizes of both; unrelated ones have none
 _AS_FAR, _MOST = 1.5, 0.6  # times as far at most, and so do most of them
 
 
@@ -37,7 +39,7 @@ class LostSign(Check):
         part = _other_way(w.turn, w.rotation, _TURNS)
         if part and _one_sided(w.rotation):
             return self._of_input(f"the {words.name} turn to one side alone", "yaw rate", part)
-        if part and not seen.positions:
+        if part > (_PART if seen.input_name == "wheel" else _LATE_PART) and not seen.positions:
             return self.found(
                 f"in {100.0 * part:.0f} % of the turns the heading of the poses turns as far as the "
                 f"{words.name} do, but to the other side: it lost its sign, or half of its circle",
@@ -65,13 +67,17 @@ def _other_way(done: Floats, said: Floats, least: float) -> float:
     ratio = done[clear] / said[clear]
     along, against = np.abs(ratio[ratio > 0.0]), np.abs(ratio[ratio < 0.0])
     changes = np.count_nonzero(np.diff(np.sign(ratio)))
-    if min(len(along), len(against)) < max(_FEWEST, _PART * len(ratio)) or changes < _TIMES:
+    fewest = _FEWEST if _one_sided(said) else _FEWEST_OF_BOTH
+    if min(len(along), len(against)) < max(fewest, _PART * len(ratio)) or changes < _TIMES:
         return 0.0
     if _late(done, said):
         return 0.0
     usual = float(np.median(along))
     as_far = [np.abs(np.log(side / usual)) < math.log(_AS_FAR) for side in (along, against)]
-    sure = _one_sided(said) or min(side.mean() for side in as_far) > _MOST
+    follows = correlation(*(np.abs(each[clear]) - np.abs(each[clear]).mean() for each in (done, said)))
+    sure = follows > _FOLLOWS_SOME
+    if not _one_sided(said):
+        sure = follows > _FOLLOWS and min(side.mean() for side in as_far) > _MOST
     return len(against) / len(ratio) if sure else 0.0
 
 
