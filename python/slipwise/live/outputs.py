@@ -41,7 +41,7 @@ class Path:
     poses: Floats  # [N, 3] x, y [m], yaw [rad] in that frame
     covariance: Floats  # [N, 3, 3]
     asked: bool = False  # on request
-    why: str = ""  # there is none
+    why: str = ""  # there is no path; empty: there is
 
     @classmethod
     def none(cls, why: str) -> Path:

@@ -38,7 +38,9 @@ class LostSign(Check):
         w, words = seen.windows, seen.words
         part = _other_way(w.turn, w.rotation, _TURNS)
         if part and _one_sided(w.rotation):
-            return self._of_input(f"the {words.name} turn to one side alone", "yaw rate", part)
+            return self._of_input(
+                f"the {words.name} turn to one side alone", "yaw rate, or the heading,", part
+            )
         if part > (_PART if seen.input_name == "wheel" else _LATE_PART) and not seen.positions:
             return self.found(
                 f"in {100.0 * part:.0f} % of the turns the heading of the poses turns as far as the "
