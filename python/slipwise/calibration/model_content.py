@@ -58,7 +58,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         noise=_noise(learned, facts.settings),
         slip_disturbance=_slip_disturbance(learned.kept, facts.settings.segment_length(facts.input_name)),
         body_force=_body_force(motion, facts.settings),
-        range=_range(facts.range, learned, commands=facts.input_name == "command"),
+        range=_range(facts, learned),
         shares=_shares(learned, facts),
         weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
         provenance=schema.Provenance(
@@ -118,13 +118,13 @@ def _table(learned: Learned, settings: Settings) -> tuple[ParameterTable, list[f
     return table, [section.gain_v, section.gain_omega]
 
 
-def _range(inputs: schema.Range, learned: Learned, *, commands: bool) -> schema.Range:
+def _range(facts: ModelFacts, learned: Learned) -> schema.Range:
     """What the robot did: a car's commands are throttle and steering, and its curves make speeds of them."""
-    car, body = learned.car, learned.body
+    inputs, car, body = facts.range, learned.car, learned.body
     if car is None:
         curvature = None
         if learned.kept.motion.wheelbase and learned.evidence is not None:
-            curvature = driven_curvature(learned.evidence.windows, commands=commands)
+            curvature = driven_curvature(learned.evidence.windows, facts.input_name)
         return inputs.model_copy(update={"body": body, "curvature": curvature})
     speed = [float(np.interp(end, car.speed.at, car.speed.value)) for end in inputs.speed]
     fastest = max(map(abs, speed))

@@ -24,7 +24,7 @@ from slipwise.models.schema import AxisShares, Share, Shares
 Bools = NDArray[np.bool_]
 
 _FEWEST = 20  # windows that say something
-KNOWN_PART = 0.9  # of a window's time, an input must be known
+_KNOWN_PART = 0.9  # of a window's time, an input must be known
 _DRIVEN = 0.05  # of the largest command, below which a window says nothing of small ones
 _CLEAR, _LARGE = 3.0, 0.1  # standard deviations, and part of the share, by which small commands differ
 _LARGEST = 100.0  # times what is commanded; more is of commands that are as good as none
@@ -32,8 +32,8 @@ _TINY, _HUGE = 1e-6, 1e6  # m/s or rad/s; no robot is commanded less, or drives 
 _BEND = 1.0  # rad that a window may turn, and turn more than its neighbours, where positions tell speeds
 _WRAPS = 1.2  # rad by which turns in windows scatter, from which on many pass for turns the other way
 _ALONE = 0.05  # of the squares of speeds; where turns explain the rest, driving ahead is not told from them
-COMMANDS, WHEELS = 9, 13  # columns of forward, sideways, rotation, known
-FORWARD, SIDEWAYS, ROTATION = 0, 1, 2
+_COMMANDS, _WHEELS = 9, 13  # columns of forward, sideways, rotation, known
+_FORWARD, _SIDEWAYS, _ROTATION = 0, 1, 2
 RUN, START, DURATION, DISTANCE, TURN, AHEAD, LEFT = 0, 1, 3, 4, 6, 17, 18  # columns of `_core` rows
 SAME = 1e-3  # s between the end of a window and the start of the next
 _SHORTEST = 0.5  # of the way, below which a chord does not tell it
@@ -77,7 +77,7 @@ def commanded_to_body(rows: Floats, sensor: PoseSensor = _PLAIN) -> dict[str, tu
         return {}
     found = {}
     for name, axis in _axes(rows, sensor).items():
-        fit = axis.to_body(COMMANDS)
+        fit = axis.to_body(_COMMANDS)
         if _share(fit) is not None and fit.gain() != 0.0:
             found[name] = (fit.inputs @ (fit.coefficients() / fit.gain()), fit.rates_out())
     return found
@@ -93,20 +93,20 @@ class _Axis:
 
 def _axes(rows: Floats, sensor: PoseSensor) -> dict[str, _Axis]:
     duration = rows[:, DURATION]
-    places = {first: _places(rows, first) for first in (COMMANDS, WHEELS)}
+    places = {first: _places(rows, first) for first in (_COMMANDS, _WHEELS)}
     turned = {first: rows[:, TURN] / duration - _veer(rows, first, places[first]) for first in places}
 
     def turns(first: int) -> Fit:
-        return _fit(rows[:, first + ROTATION] / duration, turned[first], places[first])
+        return _fit(rows[:, first + _ROTATION] / duration, turned[first], places[first])
 
     ahead = (ways_ahead(rows, sensor.yaw) + sensor.y * rows[:, TURN]) / duration
 
     def speeds(first: int) -> Fit:
         if sensor.positions:
             return _speeds_of_positions(rows, turns, sensor.y, first)
-        return _fit(rows[:, first + FORWARD] / duration, ahead, places[first])
+        return _fit(rows[:, first + _FORWARD] / duration, ahead, places[first])
 
-    return {"speed": _Axis(FORWARD, speeds), "yaw_rate": _Axis(ROTATION, turns)}
+    return {"speed": _Axis(_FORWARD, speeds), "yaw_rate": _Axis(_ROTATION, turns)}
 
 
 def _speeds_of_positions(rows: Floats, turns: Callable[[int], Fit], sensor_y: float, first: int) -> SquareFit:
@@ -116,17 +116,17 @@ def _speeds_of_positions(rows: Floats, turns: Callable[[int], Fit], sensor_y: fl
     Where a window turns far, or the turning changes much, a chord tells no way: such windows are left out.
     """
     duration, places, follows = rows[:, DURATION], _places(rows, first), follows_before(rows)
-    acting = np.column_stack([rows[places + tap, first + ROTATION] for tap in TAPS])
+    acting = np.column_stack([rows[places + tap, first + _ROTATION] for tap in TAPS])
     turn = np.zeros(len(rows))
     turn[places] = acting @ turns(first).coefficients()
     shape = np.abs(chord_per_way(turn, duration, follows))
     bent = np.maximum(np.abs(turn - np.roll(turn, 1)), np.abs(turn - np.roll(turn, -1)))
-    little = (bent < _BEND) & (np.abs(rows[:, first + ROTATION]) < _BEND)
+    little = (bent < _BEND) & (np.abs(rows[:, first + _ROTATION]) < _BEND)
     squares = np.where(little, np.square(rows[:, DISTANCE] / shape / duration), np.nan)
     sane = _sane(rows[:, first] / duration, squares, places)
     rates = (turn / duration)[sane]
-    plain = _fit(rows[:, first + FORWARD] / duration, squares, sane)
-    swings = np.column_stack((rates, (rows[:, first + SIDEWAYS] / duration)[sane]))
+    plain = _fit(rows[:, first + _FORWARD] / duration, squares, sane)
+    swings = np.column_stack((rates, (rows[:, first + _SIDEWAYS] / duration)[sane]))
     return SquareFit(
         plain.inputs, plain.outputs, plain.parts, beside=-sensor_y * rates, adding=np.square(swings)
     )
@@ -134,7 +134,7 @@ def _speeds_of_positions(rows: Floats, turns: Callable[[int], Fit], sensor_y: fl
 
 def _veer(rows: Floats, first: int, places: Ints) -> Floats:
     """Return yaw rates [N] rad/s that come of driving ahead: a robot that veers turns alike to both sides."""
-    rates = rows[:, [first + FORWARD, first + ROTATION, TURN]] / rows[:, [DURATION]]
+    rates = rows[:, [first + _FORWARD, first + _ROTATION, TURN]] / rows[:, [DURATION]]
     ahead, given, turned = rates.T
     places = _sane(given, turned, _sane(ahead, turned, places))
     beside = np.column_stack([given[places + tap] for tap in TAPS] + [np.abs(given[places])])
@@ -149,7 +149,7 @@ def _veer(rows: Floats, first: int, places: Ints) -> Floats:
 
 def _lost(rows: Floats, turning: _Axis) -> bool:
     """Whether courses of positions scatter so far that turns between them come out as turns the other way."""
-    fit = turning.to_body(COMMANDS)
+    fit = turning.to_body(_COMMANDS)
     if not len(fit):
         return False
     left = (fit.outputs - fit.inputs @ fit.coefficients()) * float(np.median(rows[:, DURATION]))
@@ -157,24 +157,24 @@ def _lost(rows: Floats, turning: _Axis) -> bool:
 
 
 def _axis(rows: Floats, axis: _Axis) -> AxisShares | None:
-    to_body = axis.to_body(COMMANDS)
+    to_body = axis.to_body(_COMMANDS)
     arrives = _share(to_body)
     if arrives is None:
         return None
-    commands, wheels = (rows[:, first + axis.column] / rows[:, DURATION] for first in (COMMANDS, WHEELS))
-    both = np.intersect1d(_places(rows, COMMANDS), _places(rows, WHEELS))
+    commands, wheels = (rows[:, first + axis.column] / rows[:, DURATION] for first in (_COMMANDS, _WHEELS))
+    both = np.intersect1d(_places(rows, _COMMANDS), _places(rows, _WHEELS))
     return AxisShares(
         windows=len(to_body),
         arrives=arrives,
         wheels=_share(_fit(commands, wheels, both)),
-        floor=_share(axis.to_body(WHEELS)),
+        floor=_share(axis.to_body(_WHEELS)),
         **({} if isinstance(to_body, SquareFit) else _out_of_proportion(to_body)),
     )
 
 
 def _places(rows: Floats, first: int) -> Ints:
     """Return the windows that have neighbours, in all of which the input is known."""
-    known = rows[:, first + 3] > KNOWN_PART * rows[:, DURATION]
+    known = rows[:, first + 3] > _KNOWN_PART * rows[:, DURATION]
     follows = follows_before(rows)
     places = np.arange(-TAPS[0], len(rows) - TAPS[-1])
     good = [known[places + tap] for tap in TAPS] + [follows[places + tap] for tap in TAPS[1:]]

@@ -13,6 +13,7 @@ from slipwise.live.outputs import (
     AppliedParameters,
     ModelText,
     NextMovesNow,
+    NoPrediction,
     Odometry,
     Output,
     Path,
@@ -160,7 +161,7 @@ def _content(output: Output) -> dict[str, object]:
             "frame": output.frame,
             "since_pose": output.since_pose,
         }
-    if isinstance(output, Path) and output.why:
+    if isinstance(output, NoPrediction):
         return {"prediction": None, "why": output.why}
     if isinstance(output, Path):
         return {

@@ -17,7 +17,7 @@ from slipwise.errors import SlipwiseError
 from slipwise.live.giving import Giving
 from slipwise.live.node_parts import NodeParts
 from slipwise.live.odometry import odometry_of, path_ahead
-from slipwise.live.outputs import Odometry, Output, ParameterNow, Path
+from slipwise.live.outputs import NoPrediction, Odometry, Output, ParameterNow, Path
 from slipwise.live.requests import asked_commands
 from slipwise.live.samples import Answer, Override, Pose, Request, RunStart, Sample, SurfaceCue, Unusable
 from slipwise.live.status import DrivenPath, Now, parameters_now, status_of
@@ -203,7 +203,7 @@ class LiveNode:
         if request.answer is not None:
             request.answer(answer)
         elif not answer.success and request.kind == "predict":
-            self._publish(Path.none(answer.message))
+            self._publish(NoPrediction(answer.message))
 
     def _answer_to(self, request: Request) -> Answer:
         parts, t = self._parts, self._parts.intake.newest

@@ -41,12 +41,13 @@ class Path:
     poses: Floats  # [N, 3] x, y [m], yaw [rad] in that frame
     covariance: Floats  # [N, 3, 3]
     asked: bool = False  # on request
-    why: str = ""  # there is no path; empty: there is
 
-    @classmethod
-    def none(cls, why: str) -> Path:
-        """Return the answer to a request that has none."""
-        return cls(np.empty(0), "", np.empty((0, 3)), np.empty((0, 3, 3)), asked=True, why=why)
+
+@dataclass(frozen=True)
+class NoPrediction:
+    """The answer to a request that came by lines, of a path that cannot be predicted."""
+
+    why: str
 
 
 @dataclass(frozen=True)
@@ -198,7 +199,9 @@ class AppliedParameters:
     file: str = ""  # which holds the same, for a restart of the node
 
 
-Output = Odometry | Path | Status | SurfaceNow | NextMovesNow | ModelText | Note | AppliedParameters
+Output = (
+    Odometry | Path | NoPrediction | Status | SurfaceNow | NextMovesNow | ModelText | Note | AppliedParameters
+)
 
 
 def next_moves_content(now: NextMovesNow) -> dict[str, Any]:

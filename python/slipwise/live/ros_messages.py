@@ -17,6 +17,7 @@ from slipwise.live.outputs import (
     Floats,
     ModelText,
     NextMovesNow,
+    NoPrediction,
     Note,
     Odometry,
     Output,
@@ -135,8 +136,7 @@ class RosMessages:
             case Odometry():
                 return self._odometry(output, wanted)
             case Path():
-                unasked = not output.asked and wanted("predicted_path")
-                return self._path(output) if unasked or (output.asked and not output.why) else []
+                return self._path(output) if output.asked or wanted("predicted_path") else []
             case Status():
                 return self._status(output, wanted)
             case SurfaceNow():
@@ -149,6 +149,8 @@ class RosMessages:
                 return [self._diagnostics(output.t, (note_diagnostic(output, self._name),), "")]
             case AppliedParameters():
                 return []  # for the node that it names alone
+            case NoPrediction():
+                return []  # a service has an answer of its own
 
     def _odometry(self, now: Odometry, wanted: Callable[[str], bool]) -> list[RosMessage]:
         whole, alone = wanted("odometry"), wanted("twist")

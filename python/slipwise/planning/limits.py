@@ -67,8 +67,7 @@ def limits_of(model: Model) -> Limits:
             advice="give limits, or calibrate on a drive that has both",
         )
     curvature = (1.0 if model.steers else 2.0) * yaw_rate / speed
-    if model.steers:
-        curvature = max(curvature, model.content.range.curvature or 0.0)
+    curvature = max(curvature, model.content.range.curvature or 0.0)  # that is known of robots that steer
     return Limits(speed=speed, yaw_rate=yaw_rate, curvature=curvature, acceleration=acceleration)
 
 

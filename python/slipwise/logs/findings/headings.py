@@ -140,7 +140,7 @@ class UnlikelySpeed(Check):
         if not _agree(driven):
             return None
         scale = float(np.median(driven.scale))
-        if words.name == "commands" and _agree(seen.other_driven):
+        if seen.input_name == "command" and _agree(seen.other_driven):
             by_wheels = float(np.median(seen.other_driven.scale))
             if abs(math.log(by_wheels / scale)) < math.log(_SAME):  # the wheels do as they are commanded
                 words, scale = seen.other_words, by_wheels

@@ -6,6 +6,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -84,6 +85,7 @@ class _Answer:
     none: float  # and without
 
 
+@lru_cache(maxsize=1)  # both checks look at one log in turn
 def _best_answer(whole: WholeLog) -> _Answer | None:
     """Return at what time both agree; None where they do not, or no better than without an offset."""
     if whole.input_name != "command":

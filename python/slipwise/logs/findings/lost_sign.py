@@ -63,31 +63,33 @@ class LostSign(Check):
         )
 
 
-def _other_way(done: Floats, said: Floats, least: float) -> float:
-    """Return the part of windows that go the other way than is said, as far where that has both; or 0."""
-    clear = np.minimum(np.abs(done), np.abs(said)) > least
-    ratio = done[clear] / said[clear]
+def _other_way(done: Floats, given: Floats, least: float) -> float:
+    """Return the part of windows that go the other way than is given, as far where that has both; or 0."""
+    clear = np.minimum(np.abs(done), np.abs(given)) > least
+    ratio = done[clear] / given[clear]
     along, against = np.abs(ratio[ratio > 0.0]), np.abs(ratio[ratio < 0.0])
     changes = np.count_nonzero(np.diff(np.sign(ratio)))
-    fewest = _FEWEST if _one_sided(said) else _FEWEST_OF_BOTH
-    if min(len(along), len(against)) < max(fewest, _PART * len(ratio)) or changes < _TIMES:
+    one_sided = _one_sided(given)
+    fewest = max(_FEWEST if one_sided else _FEWEST_OF_BOTH, _PART * len(ratio))
+    if min(len(along), len(against)) < fewest or changes < _TIMES or _late(done, given):
         return 0.0
-    if _late(done, said):
-        return 0.0
-    usual = float(np.median(along))
-    as_far = [np.abs(np.log(side / usual)) < math.log(_AS_FAR) for side in (along, against)]
-    follows = correlation(*(np.abs(each[clear]) - np.abs(each[clear]).mean() for each in (done, said)))
-    sure = follows > _FOLLOWS_SOME
-    if not _one_sided(said):
-        sure = follows > _FOLLOWS and min(side.mean() for side in as_far) > _MOST
+    follows = correlation(*(np.abs(each[clear]) - np.abs(each[clear]).mean() for each in (done, given)))
+    sure = follows > _FOLLOWS_SOME if one_sided else follows > _FOLLOWS and _as_far(along, against)
     return len(against) / len(ratio) if sure else 0.0
 
 
-def _late(done: Floats, said: Floats) -> bool:
-    """Say whether windows do what was said in one before rather than what is."""
-    now = correlation(done, said)
-    return max(correlation(done[k:], said[:-k]) for k in range(1, _LATE + 1)) > max(_SO, now + _MORE)
+def _as_far(along: Floats, against: Floats) -> bool:
+    """Say whether most windows of either side go as far as is usual along."""
+    usual = float(np.median(along))
+    near = [np.abs(np.log(side / usual)) < math.log(_AS_FAR) for side in (along, against)]
+    return bool(min(side.mean() for side in near) > _MOST)
 
 
-def _one_sided(said: Floats) -> bool:
-    return bool((said >= 0.0).all() or (said <= 0.0).all())
+def _late(done: Floats, given: Floats) -> bool:
+    """Say whether windows do what was given in one before rather than what is."""
+    now = correlation(done, given)
+    return max(correlation(done[k:], given[:-k]) for k in range(1, _LATE + 1)) > max(_SO, now + _MORE)
+
+
+def _one_sided(given: Floats) -> bool:
+    return bool((given >= 0.0).all() or (given <= 0.0).all())

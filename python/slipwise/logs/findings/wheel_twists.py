@@ -50,17 +50,13 @@ class DeadWheel(Check):
         """Look at the curvature of the wheels' twist."""
         moving = _fast(np.abs(w.forward)) & (w.distance > _LEAST)
         wheels, poses = w.rotation[moving] / w.forward[moving], w.turn[moving] / w.forward[moving]
-        alike = np.abs(np.diff(wheels)) <= 2.0 * _TIGHT * np.abs(wheels[1:])
-        ends = np.concatenate(([0], np.flatnonzero(~alike) + 1, [len(wheels)]))
-        longest = int(np.argmax(np.diff(ends)))
-        curve = _stuck(wheels, poses)
-        since = ""
+        curve, since = _stuck(wheels, poses), ""
         if curve is None:
-            part = slice(ends[longest], ends[longest + 1])
+            part = _longest_alike(wheels)
             curve = _stuck(wheels[part], poses[part])
-            since = f" from {w.since[moving][part][0]:.0f} s on" if curve else ""
-        if curve is None:
-            return None
+            if curve is None:
+                return None
+            since = f" from {w.since[moving][part][0]:.0f} s on"
         side = "left" if curve > 0.0 else "right"
         return cls.found(
             f"the wheels turn by {curve:.3g} rad for each metre{since}, whatever the robot does: the {side} "
@@ -70,8 +66,16 @@ class DeadWheel(Check):
         )
 
 
+def _longest_alike(curves: Floats) -> slice:
+    """Return the longest part in which each is nearly as the one before."""
+    alike = np.abs(np.diff(curves)) <= 2.0 * _TIGHT * np.abs(curves[1:])
+    ends = np.concatenate(([0], np.flatnonzero(~alike) + 1, [len(curves)]))
+    longest = int(np.argmax(np.diff(ends)))
+    return slice(ends[longest], ends[longest + 1])
+
+
 def _stuck(wheels: Floats, poses: Floats) -> float | None:
-    """Return the one curvature [1/m] of wheels in windows in which poses have others; None."""
+    """Return the curvature [1/m] that wheels keep in windows in which poses do not; None: they keep none."""
     if len(wheels) < _ENOUGH:
         return None
     curve = float(np.median(wheels))
