@@ -324,6 +324,8 @@ def of_poses(change: Callable[[Poses], Poses], *kinds: str, unseen: tuple[str, .
 
 FORWARD = ("DS3", "MRCLAM6_R1")
 UNEVEN = ("DS3", "asphalt_9_25_12h8s57", "grass_8_8_15h56s39")  # commands are not done as they are
+UNCLEAR = (*UNEVEN, "grass_7_29_14h46s15")
+HALF_LATER = sides(lambda left, right, t: (np.where(t < t.mean(), left, 0.5 * left), right))
 ONE_SIDED = ("asphalt_9_25_12h8s57", "grass_8_8_15h56s39")  # hardly turn to the other side
 NEVER_STANDS = ("simulated", "DS3", "tile_deflated_tyres")
 NOT_THESE = ("unrelated", "does-not-move", "lost-heading", "implausible")
@@ -344,6 +346,7 @@ FAULTS: dict[str, Fault] = {
     "x and y swapped": of_poses(lambda p: replace(p, x=p.y, y=p.x), "implausible"),
     "left wheel dead": of_wheels(sides(lambda left, right, t: (0.0 * left, right)), "dead-wheel"),
     "right wheel dead": of_wheels(sides(lambda left, right, t: (left, 0.0 * right)), "dead-wheel"),
+    "a wheel counts half later": of_wheels(HALF_LATER, "uneven-wheels", unseen=("MRCLAM6_R1",)),
     "counter of 16 bits": of_wheels(sides(wrapping(16.4)), "wheel-spikes"),
     "counter of an angle": of_wheels(sides(wrapping(2.0 * np.pi * RADIUS)), "wheel-spikes"),
     "spikes of 20 times": of_wheels(spiked, "wheel-spikes"),
@@ -355,9 +358,7 @@ FAULTS: dict[str, Fault] = {
         lambda p: replace(p, yaw=np.arccos(np.cos(p.yaw))), "lost-sign", "implausible", unseen=ONE_SIDED
     ),
     "wheels turn by size": of_wheels(sizes("omega"), "lost-sign", "implausible", unseen=UNEVEN),
-    "commands turn by size": of_commands(
-        sizes("omega"), "lost-sign", unseen=(*UNEVEN, "grass_7_29_14h46s15")
-    ),
+    "commands turn by size": of_commands(sizes("omega"), "lost-sign", unseen=UNCLEAR),
     "wheels drive by size": of_wheels(sizes("v"), "lost-sign", unseen=("simulated", "DS3")),
     "no heading": of_poses(lambda p: replace(p, yaw=0.0 * p.yaw), "constant-heading", "lost-heading"),
     "course for a heading": Fault(by_course, ("course-heading",), unseen=FORWARD),

@@ -58,7 +58,7 @@ def lattice(
     out = Output(json)
     files = {"lattice": output / "lattice.json", "curvature": output / "curvature.csv"}
     refuse_unwritable(*files.values(), out.written_file, inputs=[model])
-    learned = load_model(model)
+    learned = load_model(model).of_input("command")
     if not learned.content.verdict.good and not force:
         say_refused(out, learned, "lattice")
         return 1
@@ -84,7 +84,7 @@ def _write_table(path: Path, held: CurvatureMap) -> None:
 
     from slipwise.files import write_text_whole
 
-    rows = ["speed,told_curvature,held_curvature,achieved_speed,sideslip"]
+    rows = ["speed,commanded_curvature,held_curvature,achieved_speed,sideslip"]
     for i, j in np.argwhere(np.isfinite(held.held)).tolist():
         values = (
             held.speed[i],

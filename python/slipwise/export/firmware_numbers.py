@@ -71,6 +71,10 @@ class FirmwareNumbers:
         return Quantity(number, f"{logged[0]:g} was in force and {reached}; {_FEEDBACK}")
 
     @property
+    def _steers(self) -> bool:
+        return self._model.steers or self._options.min_turning_radius is not None
+
+    @property
     def limits_asked(self) -> bool:
         """Whether limits are to be written."""
         return self._options.limits
@@ -83,8 +87,8 @@ class FirmwareNumbers:
         return self._scaled("RO_MAX_THR_SPEED", self._speed_gain, "speed")
 
     def _yaw_rate_correction(self) -> Answer:
-        if self._options.min_turning_radius is not None:
-            return "RA_MAX_STR_ANG holds the correction, and two would be one too many"
+        if self._steers:
+            return "RA_MAX_STR_ANG holds that of vehicles that steer, and two would be one too many"
         if not self._commands:
             return self._of_wheels(
                 lambda found: found.separation * (1.0 / self._options.logged_separation_multiplier),
@@ -105,13 +109,13 @@ class FirmwareNumbers:
         return isinstance(found, Quantity) and not self.numbers.objection(found.number)
 
     def _full_differential_speed(self) -> Answer:
-        if self._options.min_turning_radius is not None:
+        if self._steers:
             return "it is of vehicles that turn by their wheels' speeds"
         return self._scaled("RD_MAX_THR_YAW_R", self._yaw_gain, "yaw rate")
 
     def _wheel_separation(self) -> Answer:
         separation = self._options.wheel_separation
-        if separation is None or self._options.min_turning_radius is not None:
+        if separation is None or self._steers:
             return "give --wheel-separation for a robot that turns by its wheels' speeds"
         return Quantity(self.numbers.exactly(separation), "nominal, as given: slip is corrected elsewhere")
 

@@ -22,10 +22,22 @@ _BOUNDS = {
     "planning_horizon": (0.01, 1000.0, "s"),
     "filter_rate": (0.1, 100000.0, "Hz"),
 }
-#: Parameters of tools that are read as logged: those that scale, and others.
-_OF_PX4 = ("RO_MAX_THR_SPEED", "RO_YAW_RATE_CORR", "RD_MAX_THR_YAW_R")
-_SCALES = (*_OF_PX4, "ATC_STR_RAT_FF", "CRUISE_SPEED", "CRUISE_THROTTLE", "WENC_RADIUS", "WENC2_RADIUS")
-_LOGGED = (*_SCALES, "WENC_POS_Y", "WENC2_POS_Y", "steering_offset")
+#: Parameters that are read as logged, by the target whose they are; places and offsets may be negative.
+LOGGED = {
+    "px4": ("RO_MAX_THR_SPEED", "RO_YAW_RATE_CORR", "RD_MAX_THR_YAW_R"),
+    "ardupilot": (
+        "ATC_STR_RAT_FF",
+        "CRUISE_SPEED",
+        "CRUISE_THROTTLE",
+        "WENC_RADIUS",
+        "WENC2_RADIUS",
+        "WENC_POS_Y",
+        "WENC2_POS_Y",
+    ),
+    "autoware": ("steering_offset",),
+}
+_EVERY = tuple(name for names in LOGGED.values() for name in names)
+_SIGNED = ("WENC_POS_Y", "WENC2_POS_Y", "steering_offset")
 
 
 @dataclass(frozen=True)
@@ -68,11 +80,11 @@ class ExportOptions:
                     advice=f"give {least:g} to {most:g} {unit}".rstrip(),
                 )
         for name, value in self.logged.items():
-            if name not in _LOGGED:
+            if name not in _EVERY:
                 what = f"nothing follows from {name}"
-                raise SettingsError(what, where="--logged", advice=f"one of {', '.join(_LOGGED)}")
-            if not math.isfinite(value) or (name in _SCALES and not value > 0.0):
-                kind = "positive" if name in _SCALES else "finite"
+                raise SettingsError(what, where="--logged", advice=f"one of {', '.join(_EVERY)}")
+            if not math.isfinite(value) or (name not in _SIGNED and not value > 0.0):
+                kind = "finite" if name in _SIGNED else "positive"
                 raise SettingsError(f"{name} was {value:g}", where="--logged", advice=f"give a {kind} number")
 
     def given(self) -> tuple[str, ...]:

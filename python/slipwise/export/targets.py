@@ -15,7 +15,7 @@ from slipwise.export.diff_drive import diff_drive
 from slipwise.export.firmware import FirmwareFile, ardupilot, px4
 from slipwise.export.mounts import mount_of_look, mounts_text
 from slipwise.export.mppi import mppi
-from slipwise.export.options import ExportOptions
+from slipwise.export.options import LOGGED, ExportOptions
 from slipwise.export.origin import origin_lines
 from slipwise.export.parameter_file import ParameterFile, Value
 from slipwise.export.robot_localization import robot_localization
@@ -63,6 +63,11 @@ class Target:
                     where=option,
                     advice=f"it is for {readers}; leave it out",
                 )
+        theirs = LOGGED.get(self.name, ())
+        for name in options.logged:
+            if name not in theirs:
+                what = f"{self.name} has no {name}"
+                raise SettingsError(what, where="--logged", advice=f"its own are {', '.join(theirs)}")
 
 
 def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callable[..., Exported]:

@@ -14,7 +14,7 @@ from cli.conftest import Result
 from sample_models import make_model, named
 
 Slipwise = Callable[..., Result]
-SKIDDING = named("edd-2", ang__w=-0.3)
+SKIDDING = replace(named("edd-2", ang__w=-0.3), commands=True)
 
 
 @pytest.fixture
@@ -46,7 +46,7 @@ def test_the_table_has_what_slip_leaves(slipwise: Slipwise, arguments: list[obje
     result = slipwise(*arguments, "--json", "-")
     assert result.code == 0
     table = np.genfromtxt("out/lattice/curvature.csv", delimiter=",", names=True)
-    assert table["held_curvature"] == pytest.approx(0.7 * table["told_curvature"], abs=1e-5)
+    assert table["held_curvature"] == pytest.approx(0.7 * table["commanded_curvature"], abs=1e-5)
     tightest = table["held_curvature"].max()
     assert result.json["lattice_metadata"]["turning_radius"] == pytest.approx(1.0 / tightest, rel=0.1)
 
@@ -58,6 +58,16 @@ def test_a_bad_verdict_is_refused_unless_forced(slipwise: Slipwise, arguments: l
     assert "NOT GOOD ENOUGH. It does not beat doing nothing." in result.out
     assert not Path("out").exists()
     assert slipwise(*arguments, "--force").code == 0
+
+
+def test_a_model_of_wheels_alone_says_nothing_of_what_is_commanded(
+    slipwise: Slipwise, arguments: list[object]
+) -> None:
+    make_model(replace(SKIDDING, commands=False)).save("model.yaml")
+    result = slipwise(*arguments)
+    assert result.code == 2
+    assert "commands" in result.line
+    assert not Path("out").exists()
 
 
 def test_a_lattice_that_cannot_be_is_refused(

@@ -101,7 +101,10 @@ def test_a_vehicle_that_steers_gets_its_steering_angle() -> None:
     read = px4_values(exported(COMMANDS, "px4", px4="1.17", min_turning_radius=2.0, wheel_base=1.0).text)
     assert read["RA_MAX_STR_ANG"] == pytest.approx(math.atan(1.0 / (2.0 * 0.9 / 0.6)), rel=1e-5)
     assert read["RA_WHEEL_BASE"] == 1.0
-    assert not {"RO_YAW_RATE_CORR", "RD_WHEEL_TRACK"} & set(read)
+    turns = {"RO_YAW_RATE_CORR", "RD_WHEEL_TRACK"}
+    assert not turns & set(read)
+    known = exported(replace(COMMANDS, wheelbase=1.0), "px4", px4="1.17", wheel_separation=0.5)
+    assert not turns & set(known.values)
 
 
 @pytest.mark.parametrize("first_y", [-0.25, 0.25])

@@ -14,7 +14,7 @@ from sample_models import Made, make_model, named
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import ModelError, SettingsError
-from slipwise.export import TARGETS, ExportOptions, Target, export_model
+from slipwise.export import TARGETS, ExportOptions, Target, export_model, find_target
 from slipwise.export.wheel_multipliers import wheel_multipliers
 from slipwise.logs import open_log
 from slipwise.models import Model
@@ -135,6 +135,15 @@ GIVEN = ExportOptions(
     ardupilot="4.6",
     logged={"RO_YAW_RATE_CORR": 1.1},
 )
+
+
+@pytest.mark.parametrize(
+    ("target", "name", "own"),
+    [("px4", "CRUISE_SPEED", "RO_MAX_THR_SPEED"), ("ardupilot", "RO_YAW_RATE_CORR", "ATC_STR_RAT_FF")],
+)
+def test_a_parameter_of_another_firmware_is_refused(target: str, name: str, own: str) -> None:
+    with pytest.raises(SettingsError, match=f"{target} has no {name}.*its own are.*{own}"):
+        find_target(target).refuse_others(ExportOptions(logged={name: 1.2}))
 
 
 def test_what_a_target_does_not_read_changes_nothing_of_its_file_and_is_refused(

@@ -31,7 +31,7 @@ class AskewAttitude(Check):
 
     kind, family = "askew-attitude", "signs and units"
     means = "the sensor of roll and pitch is not mounted level: its lean passes for a slope"
-    shows = "a mean pitch or roll of 0.07 rad in all directions of a drive that comes back to where it was"
+    shows = "a mean pitch or roll of 0.07 rad in all directions of a drive that comes back"
     cure = "correct the static transform from `base_link` to the sensor, or leave roll and pitch out"
 
     def look_at(self, whole: WholeLog) -> Finding | None:

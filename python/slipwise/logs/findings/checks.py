@@ -39,12 +39,14 @@ from slipwise.logs.findings.repeated_wheels import RepeatedWheels
 from slipwise.logs.findings.saturation import Saturated
 from slipwise.logs.findings.seen import AT_CENTRE, Place, Seen, WholeLog
 from slipwise.logs.findings.sensor_place import SensorOffCentre
+from slipwise.logs.findings.sideways_speed import SidewaysSpeed
 from slipwise.logs.findings.source_scale import SourceScale
 from slipwise.logs.findings.sources import IdleSource, TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
 from slipwise.logs.findings.steering import Commanded, NotSteered
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
 from slipwise.logs.findings.towed_poses import TowedPoses
+from slipwise.logs.findings.uneven_wheels import UnevenWheels
 from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log, Run, has_course
@@ -53,7 +55,14 @@ from slipwise.logs.motion_windows import evidence_of
 _LONG = 4  # times as many windows suffice of a robot that hardly turns, or only turns
 
 #: What else looks wrong follows from these.
-FIRST: tuple[Check, ...] = (NotSteered(), DeadWheel(), LostSign(), Implausible(), UnreachablePoses())
+FIRST: tuple[Check, ...] = (
+    NotSteered(),
+    DeadWheel(),
+    LostSign(),
+    SidewaysSpeed(),
+    Implausible(),
+    UnreachablePoses(),
+)
 #: In the order in which they are looked for: what explains others comes before them.
 THEN: tuple[Check, ...] = (
     UnlikelySpeed(),
@@ -68,6 +77,7 @@ THEN: tuple[Check, ...] = (
     SensorOffCentre(),
     LostHeading(),
     RepeatedWheels(),
+    UnevenWheels(),
     WheelSize(),
     OtherUnit(),
     MissingTurns(),

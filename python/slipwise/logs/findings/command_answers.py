@@ -35,9 +35,7 @@ class EchoedCommands(Check):
     """Wheel speeds that are the commands."""
 
     kind, family, spoils = "echoed-commands", "topics", False
-    means = (
-        "the odometry echoes the command (open loop), or one is a copy of the other; or the drive is perfect"
-    )
+    means = "the odometry echoes the command (open loop), or one is a copy of the other"
     shows = "95 % of the wheel speeds are one of the last three commands to five digits"
     cure = "give the encoders; `open_loop: false` of diff_drive_controller; else `--wheel-topic none`"
 
@@ -81,9 +79,7 @@ class DeadBand(Check):
     kind, family, spoils = "dead-band", "drive", False
     of_input = True
     means = "commands below a size turn no wheel: a dead band of the drive larger than what the planner sends"
-    shows = (
-        "of commands held for 1.5 s, 95 % below it turn the wheels by less than 5 % of it, and 95 % above do"
-    )
+    shows = "of commands held for 1.5 s, 95 % below it turn the wheels by less than 5 %, and 95 % above do"
     cure = "`min_speed_theta`, `min_speed_xy` of the planner; the least output of the motor driver"
 
     def look_at(self, whole: WholeLog) -> Finding | None:
@@ -132,7 +128,7 @@ class Overridden(Check):
 
     kind, family, spoils = "overridden", "drive", False
     of_input = True
-    means = "somebody else drives: an operator's override, or the other inputs of a multiplexer (twist_mux)"
+    means = "somebody else drives: an operator's override, or other inputs of twist_mux"
     shows = "for 5 s and more the wheels drive, 1.5 s after a command to stand that is repeated all the time"
     cure = "record what the multiplexer gives out; `[live] override_topic`; `--input wheel`"
 

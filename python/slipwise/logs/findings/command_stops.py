@@ -158,8 +158,8 @@ class CommandTimeout(Check):
     kind, family = "command-timeout", "drive"
     of_input = True
     means = (
-        "commands come rarely, or are silent for a while (a released stick): the robot's watchdog stops it "
-        "in between, or it holds them for long; or its timeout is not the one given"
+        "commands come rarely, or end with a released stick: the robot's watchdog stops it, or it holds "
+        "them; or its timeout is not the one given"
     )
     shows = "how long after a command that is not repeated the robot stops, and how far commands are apart"
     cure = "`--command-timeout S`; on the robot, send commands more often or raise `cmd_vel_timeout`"

@@ -28,11 +28,9 @@ class DriftingPoses(Check):
 
     kind, family, spoils = "drifting-poses", "poses", False
     hidden_by = ("two-sources", "unreachable-poses", "repeated-wheels")
-    means = (
-        "positions drift slowly while the robot stands: multipath of a satellite receiver; or it is pushed"
-    )
+    means = "positions drift while the robot stands: multipath of a satellite receiver; or it is pushed"
     shows = "while the wheels stand for 10 s and more, means over a second move by 0.4 m without a jump"
-    cure = "the antenna's place and ground plane, a fixed RTK solution only; what is learned has this error"
+    cure = "the antenna's place and ground plane, fixed RTK solutions only"
 
     def look_at(self, whole: WholeLog) -> Finding | None:
         """Look at the poses while the wheels stand."""

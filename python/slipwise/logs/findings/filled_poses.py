@@ -30,8 +30,8 @@ class FilledPoses(Check):
     kind, family, reserves = "filled-poses", "poses", True
     means = "poses were interpolated to a higher rate: the path is straight where the robot turned"
     shows = (
-        "the path has 15 evenly spaced corners and more, and is dead straight in between, where the heading "
-        "turns; no model is good where they are more than 0.3 s apart"
+        "the path has 15 evenly spaced corners, dead straight in between, where the heading turns; "
+        "no model is good where they are 0.3 s apart"
     )
     cure = "give the poses as they were measured, or set `pose_new` to 0 in rows between the corners"
 

@@ -33,7 +33,7 @@ class LateAnswers(Check):
 
     kind, family, spoils = "late-answers", "drive", False
     of_input = True
-    means = "the wheels answer commands later than a planner allows for: a queue, a slow bus, a slow drive"
+    means = "the wheels answer commands late: a queue, a slow bus, a slow drive"
     shows = "wheels and commands agree best with wheels 1.3 s earlier and more; real drives take up to 1.1 s"
     cure = (
         "find the queue (depth 1 for `cmd_vel`); `slipwise export --to mppi` writes the delay; drive slower"

@@ -16,7 +16,7 @@ class OutOfOrder(Check):
 
     kind, family, spoils, reserves = "out-of-order", "clocks", False, True
     of_input = True
-    means = "rows are not in the order of time, or a network overtakes itself: a part is left out"
+    means = "rows are not in the order of time, or a network overtakes itself"
     shows = "20 and 5 % of the poses, or of the inputs that are learned from, are earlier than one before"
     cure = "sort the table by `t`; date messages when they are measured"
 

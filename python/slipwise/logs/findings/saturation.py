@@ -41,9 +41,7 @@ class Saturated(Check):
 
     kind, family, spoils = "saturated", "drive", False
     of_input = True
-    means = (
-        "the drive is capped below what is commanded, in normal use: a limit of its driver or of its motors"
-    )
+    means = "the drive is capped below what is commanded: by its driver or its motors"
     shows = "for a tenth of the driven time more is asked for, and the wheels stay within 5 % of one speed"
     cure = (
         "`vx_max`, `wz_max` (MPPI) or `max_vel_x`, `max_vel_theta` (DWB) of the planner; the driver's limit"

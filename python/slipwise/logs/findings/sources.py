@@ -48,8 +48,8 @@ class TwoSources(Check):
     kind, family, spoils = "two-sources", "topics", False
     hidden_by = ("wheel-spikes",)  # that come often look like a second source
     means = (
-        "two nodes publish on one topic: two robots, two localisers, a controller and a filter, or a driver "
-        "and one that idles (no model is good)"
+        "two nodes publish on one topic: two robots, two localisers, or a driver and one that idles "
+        "(no model is good)"
     )
     shows = (
         "values take turns between two courses; exact zeros between commands that are alike, and the robot "

@@ -87,9 +87,9 @@ class ZeroCovariance(Check):
     """
 
     kind, family, spoils = "zero-covariance", "poses", False
-    means = "all covariances of the poses are zero: who fuses them takes them for exact"
+    means = "all covariances of the poses are zero"
     shows = "every variance in 20 `PoseWithCovarianceStamped` and more is 0 (in `Odometry` that is usual)"
-    cure = "none: slipwise learns how far poses scatter; fill the covariance for who fuses them"
+    cure = "none: the scatter is learned; fill the covariance for who fuses them"
     FEWEST = 20  # poses
 
     @classmethod

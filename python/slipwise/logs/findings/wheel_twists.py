@@ -10,6 +10,7 @@ import numpy as np
 
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.plausibility import correlation
+from slipwise.logs.findings.seen import WORDS
 from slipwise.logs.log import Bools, Floats
 from slipwise.logs.motion_windows import MotionWindows
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 _LEAST = 0.05  # [m] by the inputs and by the poses; less tells no direction
 _PART = 0.3  # of the fast windows' distance by the inputs
 _ENOUGH = 15  # windows
+_STRETCH = 8  # of a stretch, where poses take many curves in it
+_MANY_CURVES = 0.3  # spread of them, over the curvature of the wheels
 _TIGHT = 0.02  # spread of the wheels' curvature over the curvature, of one wheel that turns alone
 _OTHERWISE = (
     0.1  # of the windows in which poses turn the other way; of the curvature, that poses have at most
@@ -36,7 +39,7 @@ class DeadWheel(Check):
     """Wheel speeds of one side alone."""
 
     kind, family = "dead-wheel", "encoders"
-    means = "the encoder of one wheel is dead or not connected"
+    means = "one encoder is dead or not connected"
     shows = "the wheels' curvature is one within 2 %, while the poses turn both ways or hardly"
     cure = "its cable, `left_wheel_names` / `right_wheel_names`, `--left-joints`, `--right-joints`"
 
@@ -53,8 +56,9 @@ class DeadWheel(Check):
         curve, since = _stuck(wheels, poses), ""
         if curve is None:
             part = _longest_alike(wheels)
-            curve = _stuck(wheels[part], poses[part])
-            if curve is None:
+            curve = _stuck(wheels[part], poses[part], _STRETCH)
+            short = len(wheels[part]) < _ENOUGH
+            if curve is None or (short and _spread(poses[part]) < _MANY_CURVES * abs(curve)):
                 return None
             since = f" from {w.since[moving][part][0]:.0f} s on"
         side = "left" if curve > 0.0 else "right"
@@ -74,9 +78,9 @@ def _longest_alike(curves: Floats) -> slice:
     return slice(ends[longest], ends[longest + 1])
 
 
-def _stuck(wheels: Floats, poses: Floats) -> float | None:
+def _stuck(wheels: Floats, poses: Floats, enough: int = _ENOUGH) -> float | None:
     """Return the curvature [1/m] that wheels keep in windows in which poses do not; None: they keep none."""
-    if len(wheels) < _ENOUGH:
+    if len(wheels) < enough:
         return None
     curve = float(np.median(wheels))
     if not _CURVES[0] < abs(curve) < _CURVES[1] or _spread(wheels) > _TIGHT * abs(curve):
@@ -90,13 +94,21 @@ class ParentTwist(Check):
     """A twist in the frame of the pose, not of the robot."""
 
     kind, family = "parent-twist", "topics"
-    means = "the twist of the odometry is in its parent's frame (`odom`), not in that of the robot"
+    means = "a twist is in the parent's frame (`odom`, `map`), not in that of the robot"
     shows = "its direction follows the course in the world (above 0.9), not the heading (below 0.6)"
-    cure = "rotate it by the heading in the driver (nav_msgs/Odometry: twist in child_frame_id)"
+    cure = "rotate it by the heading (nav_msgs/Odometry: twist in child_frame_id)"
 
     def look(self, seen: Seen) -> Finding | None:
-        """Compare the direction of the wheels' speed with the course, in the world and in the robot."""
-        w = seen.windows_of("wheel")
+        """Compare the direction of the speed with the course, in the world and in the robot."""
+        found = self._of(seen, seen.input_name)
+        if found is None and seen.input_name != "wheel":
+            found = self._of(seen, "wheel")
+            return found and replace(found, spoils=False)
+        return found
+
+    def _of(self, seen: Seen, input_name: str) -> Finding | None:
+        """Look at one kind of input."""
+        w, name = seen.windows_of(input_name), WORDS[input_name].name
         if seen.positions or not w.sideways.any():
             return None
         moving = _fast(np.hypot(w.forward, w.sideways)) & (w.distance > _LEAST) & (np.abs(w.turn) < 1.0)
@@ -108,12 +120,11 @@ class ParentTwist(Check):
         if parent < _IN_PARENT or body > _IN_BODY:
             return None
         return self.found(
-            "the direction of the wheels' speed is that in the world, whatever the heading of the robot "
-            f"(they agree to {parent:.2f} of 1, with the heading taken off to {body:.2f}): the twist is in "
-            "its parent's frame",
-            "Rotate the twist of the odometry by its heading: it belongs into child_frame_id.",
+            f"the direction of the speed of the {name} is that in the world, whatever the heading of the "
+            f"robot (they agree to {parent:.2f} of 1, with the heading taken off to {body:.2f}): the twist "
+            "is in its parent's frame",
+            f"Rotate the twist of the {name} by the heading: it belongs into the robot's frame.",
             evidence=body,
-            spoils=seen.input_name == "wheel",
         )
 
 
@@ -121,7 +132,7 @@ class Unrelated(Check):
     """Inputs that say nothing of how the poses move."""
 
     kind, family, spoils = "unrelated", "poses", False
-    means = "the inputs do not explain the poses: of another drive, of another robot, or on other clocks"
+    means = "the inputs do not explain the poses: of another drive, robot or clock"
     shows = "turns and speeds of poses and inputs correlate by less than 0.4"
     cure = "the topic or file of the other; `--pose-clock-offset auto` where clocks are apart"
     explained_by = ("does-not-move", "parent-twist", "dead-wheel", "lost-heading", "constant-heading")
@@ -154,7 +165,7 @@ class WheelSize(Check):
     """Wheels that are far larger or smaller than was said, or that slip by as much."""
 
     kind, family, spoils = "wheel-size", "signs and units", False
-    means = "the radius of the wheels or the ticks of a turn are wrong, or the wheels slip by as much"
+    means = "the wheels' radius or the ticks of a turn are wrong, or the wheels slip by as much"
     shows = "poses move less than 0.6 or more than 1.3 times as far as the wheels say"
     cure = "`--wheel-radius`, `wheel_radius` of the controller, `--wheel-scale F,F`"
     explained_by = ("unlikely-speed", "does-not-move", "dead-wheel", "parent-twist", "lost-heading")

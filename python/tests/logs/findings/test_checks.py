@@ -23,7 +23,7 @@ from contradictory_logs import (
     with_poses,
     with_runs,
 )
-from faulty_logs import found_in, off_centre, sides, wheels, with_fault
+from faulty_logs import HALF_LATER, found_in, off_centre, sides, wheels, with_fault
 from sample_logs import Drive, steady_run
 
 from slipwise import _core
@@ -319,3 +319,17 @@ def test_poses_in_feet_spoil_both_inputs_that_agree(name: str) -> None:
         SOUND, lambda run: replace(run, poses=replace(run.poses, x=3.28 * run.poses.x, y=3.28 * run.poses.y))
     )
     assert "unlikely-speed" in {each.kind for each in findings_of(feet, name) if each.spoils}
+
+
+def test_a_wheel_that_counts_half_is_said_and_spoils_where_it_began_on_the_way() -> None:
+    """A model of its wheels holds as long as they count so: it is none of half of a drive."""
+    sound = sound_log(replace(SKID_STEERED, seconds=150.0))
+    always = with_fault(sound, wheels(sides(lambda left, right, t: (left, 0.5 * right))))
+    whole, later = (
+        next(each for each in findings_of(log, "wheel") if each.kind == "uneven-wheels")
+        for log in (always, with_fault(sound, wheels(HALF_LATER)))
+    )
+    assert not whole.spoils
+    assert whole.evidence == pytest.approx(2.0 * 0.6, abs=0.05)  # 1 m/s of left wheels that are .5 m apart
+    assert later.spoils
+    assert re.search(r"by -?0.00 rad for each metre until (7[2-9]|80) s, and by -1.2", later.sentence)
