@@ -15,6 +15,12 @@ from slipwise.models.body_lag import is_body_lag, is_hidden_lag
 from slipwise.models.parameter_table import physical_name
 from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 
+#: Terms by which slip follows gravity at 1 m/s, the angle they come of and the direction it is in.
+_BY_GRAVITY = {
+    ("lon.gx", "lon.abs(V)*gx"): "ahead (pitch)",
+    ("lat.gy", "lat.abs(V)*gy"): "to its side (roll)",
+}
+_LEAST_UPHILL, _SURE_UPHILL = 0.005, 5.0  # m/s per m/s2, and standard deviations of it
 LOOK_ALIKE = 0.9  # correlation from which on two parameters count as confounded parameters
 
 
@@ -206,3 +212,15 @@ _APART: tuple[tuple[Callable[[Confounded], bool], str], ...] = (
         "Lag and delay are hard to separate; record poses more often, and change commands in steps",
     ),
 )
+
+
+def uphill(posterior: Posterior) -> tuple[str, ...]:
+    """Return the directions in which slip goes against gravity at 1 m/s, which no robot's does."""
+    names = [info.name for info in posterior.motion.parameters]
+    found = []
+    for terms, said in _BY_GRAVITY.items():
+        row = np.isin(names, terms).astype(np.float64)
+        slip, std = float(row @ posterior.mean), float(np.sqrt(row @ posterior.covariance @ row))
+        if slip < -max(_LEAST_UPHILL, _SURE_UPHILL * std):
+            found.append(said)
+    return tuple(found)

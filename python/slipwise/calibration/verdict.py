@@ -13,6 +13,7 @@ from slipwise.calibration.identifiability import (
     longest_delay,
     not_identifiable,
     timing_words,
+    uphill,
 )
 from slipwise.calibration.judgement import FEWEST_WINDOWS, LEAST_EXPLAINED, Judgement
 from slipwise.calibration.learner import Posterior
@@ -37,6 +38,10 @@ _CLOCKS = (
     "Give --pose-clock-offset auto, or the seconds to add to the stamps of the poses. The headers of the "
     "original bag show how far the clocks are apart."
 )
+_ATTITUDE = (
+    "Change the sign of the angle that is named: nose down is a positive pitch, and left side up a positive "
+    "roll (REP-103)."
+)
 LATEST = 1.0  # s from a command to its first effect; no drive takes longer
 HIDDEN = 0.05  # of the motion; where errors hide a larger slip, no robot is said to have none
 FEW = 20  # held-out segments; a gain that shows in fewer may be chance
@@ -54,6 +59,7 @@ class Identified:
     from_log: str = "this log"  # that the parameters were learned from
     force: str = ""  # what pushes the robot beside its slip
     delay: float = 0.0  # s, the longest from an input to its first effect
+    uphill: tuple[str, ...] = ()  # "ahead", "to the side": where gravity seems to push it
 
 
 @dataclass(frozen=True)
@@ -82,7 +88,9 @@ def identified(
     timing = timing_words(posterior.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
     names = tuple(info.name for info in posterior.motion.parameters)
     delay = longest_delay(names, posterior.mean.tolist())
-    return Identified(len(posterior.mean), unknown, advice, pairs, timing, delay=delay)
+    return Identified(
+        len(posterior.mean), unknown, advice, pairs, timing, delay=delay, uphill=uphill(posterior)
+    )
 
 
 def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Verdict:
@@ -95,6 +103,7 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
         or _not_better(judgement)
         or _untrue(judgement)
         or _too_late(known, facts)
+        or _uphill(known)
     )
     reservations = _reservations(judgement, facts)
     if known.delay > LATEST and facts.clocks_compared:
@@ -109,6 +118,8 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
     advice = (*_advice(judgement, facts), *(() if of_nothing else known.advice))
     if not contradicted and _too_late(known, facts):
         advice = (_CLOCKS, *advice)
+    if not contradicted and known.uphill:
+        advice = (_ATTITUDE, *advice)
     return Verdict(
         not fault,
         " ".join(sentence for sentence in sentences if sentence),
@@ -169,6 +180,10 @@ def _too_late(known: Identified, facts: LogFacts) -> str:
         f"{_REFUSED} the poses answer the {_FOLLOWED[facts.input_name]} after {known.delay:.2g} s, later "
         "than any drive: their clocks differ."
     )
+
+
+def _uphill(known: Identified) -> str:
+    return f"{_REFUSED} by it the robot creeps uphill, {' and '.join(known.uphill)}." if known.uphill else ""
 
 
 def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:

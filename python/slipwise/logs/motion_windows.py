@@ -6,13 +6,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 
 from slipwise import _core
+from slipwise.logs.gyro import COLUMN as GYRO
 from slipwise.logs.log import Floats, Inputs, Poses, Run
 
 _KNOWN_PART = 0.9  # of a window's time, inputs must be known
+_NO_RATES = np.empty((0, 2))
+_Streams: TypeAlias = tuple[Inputs | None, Inputs | None, Poses]
 _POSES = 9  # columns of the core's rows that tell of poses; 4 of the commands and 4 of the wheels follow
 
 
@@ -59,21 +63,32 @@ def run_name(runs: Sequence[str], number: float) -> str:
     return runs[int(number)] if number < len(runs) else ""
 
 
-def evidence_of(runs: Iterable[Run], unknown_after: float) -> _core.MotionEvidence:
+def evidence_of(
+    runs: Iterable[Run], unknown_after: float, *, rates: Sequence[Floats] = ()
+) -> _core.MotionEvidence:
     """Return what a learner would know of contradictions after these runs, which learns nothing itself.
 
-    An input is unknown once it is older than `unknown_after` [s].
+    Args:
+        runs: of a log.
+        unknown_after: an input is unknown once it is older than this [s].
+        rates: of a gyro that is learned from, rows of (t, yaw rate) for each run; none is.
     """
-    return _evidence(tuple((run.commands, run.wheels, run.poses.as_measured) for run in runs), unknown_after)
+    streams = tuple((run.commands, run.wheels, run.poses.as_measured) for run in runs)
+    return _evidence_with(streams, unknown_after, rates) if rates else _evidence(streams, unknown_after)
 
 
 @lru_cache(maxsize=1)  # whoever reads a log looks at it, and whoever judges it afterwards does again
-def _evidence(
-    streams: tuple[tuple[Inputs | None, Inputs | None, Poses], ...], unknown_after: float
+def _evidence(streams: tuple[_Streams, ...], unknown_after: float) -> _core.MotionEvidence:
+    return _evidence_with(streams, unknown_after, [_NO_RATES] * len(streams))
+
+
+def _evidence_with(
+    streams: Sequence[_Streams], unknown_after: float, rates: Sequence[Floats]
 ) -> _core.MotionEvidence:
     settings = _core.StreamSettings()
     settings.unknown_after = unknown_after
-    return _core.motion_evidence(settings, [_recording(*each) for each in streams])
+    pairs = zip(streams, rates, strict=True)
+    return _core.motion_evidence(settings, [_recording(*each, gyro) for each, gyro in pairs])
 
 
 def measured_rows(runs: Iterable[Run], unknown_after: float) -> Floats:
@@ -96,9 +111,12 @@ def _slower(run: Run, factor: float) -> Run:
     return replace(run, commands=commands, wheels=wheels)
 
 
-def _recording(commands: Inputs | None, wheels: Inputs | None, poses: Poses) -> _core.Recording:
+def _recording(
+    commands: Inputs | None, wheels: Inputs | None, poses: Poses, rates: Floats
+) -> _core.Recording:
     given, measured = (np.empty((0, 4)) if i is None else i.rows() for i in (commands, wheels))
-    return _core.Recording(given, measured, np.empty((0, 3)), poses.rows())
+    gyro = {GYRO: rates} if len(rates) else {}
+    return _core.Recording(given, measured, np.empty((0, 3)), poses.rows(), gyro)
 
 
 def wrapped(angle: Floats, turn: float = 2.0 * np.pi) -> Floats:

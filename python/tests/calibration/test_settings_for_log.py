@@ -63,6 +63,17 @@ def test_gravity_is_found_on_hills_and_predictions_are_better_for_it() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("angle", "said"), [("pitch", "ahead (pitch)"), ("roll", "to its side (roll)")])
+def test_a_robot_that_creeps_uphill_has_an_angle_of_the_other_sign(angle: str, said: str) -> None:
+    (run,) = hilly_log(3, Hills(seconds=100.0)).runs
+    poses = replace(run.poses, **{angle: -getattr(run.poses, angle)})
+    verdict = calibrate(Log((replace(run, poses=poses),))).verdict
+    assert not verdict.good
+    assert f"creeps uphill, {said}." in verdict.sentence
+    assert "REP-103" in verdict.advice[0]
+
+
+@pytest.mark.slow
 def test_on_flat_ground_auto_calls_terms_of_gravity_not_identifiable() -> None:
     """Of twenty drives of a minute, at most one may claim to know one: 15 % would be seen by four in five.
 

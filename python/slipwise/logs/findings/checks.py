@@ -18,7 +18,7 @@ from slipwise.logs.findings.encoders import ReversalJumps, WheelSpikes
 from slipwise.logs.findings.filled_poses import FilledPoses
 from slipwise.logs.findings.filtered_poses import FilteredPoses
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.findings.gyro_scale import GyroScale, GyroTurnsOtherwise
+from slipwise.logs.findings.gyro_scale import GyroLate, GyroScale, GyroTurnsOtherwise
 from slipwise.logs.findings.headings import (
     BackwardPoses,
     ConstantHeading,
@@ -41,6 +41,7 @@ from slipwise.logs.findings.seen import AT_CENTRE, Place, Seen, WholeLog
 from slipwise.logs.findings.sensor_place import SensorOffCentre
 from slipwise.logs.findings.sideways_speed import SidewaysSpeed
 from slipwise.logs.findings.source_scale import SourceScale
+from slipwise.logs.findings.source_turns import SourceTurns
 from slipwise.logs.findings.sources import IdleSource, TwoSources
 from slipwise.logs.findings.standstill import DoesNotMove
 from slipwise.logs.findings.steering import Commanded, NotSteered
@@ -48,6 +49,7 @@ from slipwise.logs.findings.topics import TOPICS, ArmJoints
 from slipwise.logs.findings.towed_poses import TowedPoses
 from slipwise.logs.findings.uneven_wheels import UnevenWheels
 from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
+from slipwise.logs.gyro import gyro_rows
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Log, Run, has_course
 from slipwise.logs.motion_windows import evidence_of
@@ -85,6 +87,7 @@ THEN: tuple[Check, ...] = (
 )
 #: What is looked for in poses of further sources too.
 OF_SOURCE: tuple[Check, ...] = (FilteredPoses(),)
+_BESIDE_FIRST = SourceTurns()  # of one in which nothing else is wrong
 _OF_PLACE = {check.kind for check in (TurnedPoses, BackwardPoses, SensorOffCentre)}
 #: What only a whole log shows.
 WHOLE: tuple[Check, ...] = (
@@ -110,6 +113,7 @@ WHOLE: tuple[Check, ...] = (
     ClockDrift(),
     SourceScale(),
     GyroScale(),
+    GyroLate(),
     TwoSources(),
 )
 #: What a live node looks for in its last minutes; two sources of wheels or poses it watches as they come.
@@ -132,11 +136,12 @@ OF_STREAM: tuple[Check, ...] = (
     ClockDrift(),
     SourceScale(),
     GyroScale(),
+    GyroLate(),
     IdleSource(),
 )
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(
-    {c.kind: c for c in (*FIRST, *THEN, *WHOLE, *CLOCKS, *TOPICS, *READINGS)}.values()
+    {c.kind: c for c in (*FIRST, *THEN, *WHOLE, _BESIDE_FIRST, *CLOCKS, *TOPICS, *READINGS)}.values()
 )
 
 
@@ -228,12 +233,15 @@ def seen_in(
     """Return poses against inputs of a log; arguments as of `findings_of`, `before` of another input."""
     runs = [run for run in log.runs if has_input(run, input_name)]
     same = before is not None and runs == [run for run in log.runs if has_input(run, before.input_name)]
+    gyro = has_course(log.runs)
+    rates = [gyro_rows(run) for run in runs] if gyro else ()
+    evidence = before.evidence if before is not None and same else None
     return Seen(
-        evidence=before.evidence if before is not None and same else evidence_of(runs, unknown_after),
+        evidence=evidence_of(runs, unknown_after, rates=rates) if evidence is None else evidence,
         runs=[run.name for run in runs],
         input_name=input_name,
         positions=has_course(log.runs),
-        gyro=False,
+        gyro=gyro,
         sensor=sensor,
         commanded=Commanded.of(runs),
     )
@@ -255,7 +263,9 @@ def findings_of_others(
         theirs = replace(log, runs=runs)
         wrong = findings_in(seen_in(theirs, input_name, unknown_after))
         wrong += looked_at(WholeLog(theirs, input_name, unknown_after), OF_SOURCE)
-        found += (_of_source(each, source) for each in wrong if each.kind not in kinds)
+        new = [_of_source(each, source) for each in wrong if each.kind not in kinds]
+        beside = None if any(each.spoils for each in new) else _BESIDE_FIRST.beside(source, log.runs)
+        found += new if beside is None else (*new, beside)
     return tuple(found)
 
 

@@ -9,9 +9,10 @@ own and no part of it: nothing is asked of wheels or commands.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -41,12 +42,18 @@ _LONGEST_STEP = 1.0  # s between positions
 _FEWEST_STEPS, _FEWEST_WINDOWS = 50, 4
 _LEAST_WAY, _LEAST_TURN = 1.0, 0.5  # m and rad of a window
 _LATEST = 1.0  # s that the gyro may be later than the positions, or earlier
-_SCALES, _LATE = np.exp(0.1 * np.arange(-4, 5)), np.arange(-0.9, 1.0, 0.1)  # where the search begins
+_SCALES, _LATE = np.exp(0.1 * np.arange(-4, 5)), np.arange(-0.9, 1.0, 0.1)  # where the search begins,
+_FAR = np.exp(0.1 * np.concatenate((np.arange(-26, -4), np.arange(5, 19))))  # and where nothing near fits
+_FITS, _MISFITS = 0.01, 0.05  # of the squares of velocities, that the right scale leaves, and that none does
+_FEWER, _NOISY = 3, 2.0  # of the windows that near scales were tried in; times the noise that is explained
+_SMALLEST, _LARGEST = 0.05, 7.0  # of the scale
 _BIASES = np.linspace(-0.06, 0.06, 25)  # rad/s
 _ROUGH, _ROUNDS = 10, 8  # windows by which the search begins, and its steps
 _OUTLIER = 4.0  # times the usual error of a window, from which on it is left out
 _WORST = 1e12  # condition, beyond which the drive tells nothing
 _APART, _CERTAIN = 0.02, 4.0  # of the scale, and its standard deviations, from where on it is another
+_WRONG = 1.5  # times as far, or as little
+_LATER, _LATE_SPOILS = 0.1, 0.3  # s
 
 
 class GyroScale(Check):
@@ -54,12 +61,15 @@ class GyroScale(Check):
 
     kind, family, spoils, reserves = "gyro-scale", "signs and units", False, True
     means = "the gyro turns so many times as far as the track of the positions: its scale is wrong"
-    shows = "over windows of 25 s the scale differs from 1 by 2 % and more, by 4 deviations"
+    shows = "over windows of 25 s the scale differs from 1 by 2 %, by 4 deviations; from 50 % on it spoils"
     cure = f"divide `{COLUMN}` by the number, or leave it out: positions tell turns too, less surely"
 
     def look_at(self, whole: WholeLog) -> Finding | None:
         """Compare the gyro with the track of each run."""
         found = gyro_scale(whole.log.runs)
+        if found is not None and not found.fits:
+            what = "the turns of the gyro fit the track of the positions at no scale: slip of turns is wrong"
+            return self.found(what, f"Look at {COLUMN}, its bias and its unit, or leave it out.", spoils=True)
         if found is None or abs(found.scale - 1.0) <= max(_APART, _CERTAIN * found.std):
             return None
         return self.found(
@@ -68,6 +78,29 @@ class GyroScale(Check):
             f"Divide {COLUMN} by {number_text(found.scale)}, or leave it out: positions tell turns too, less "
             "surely.",
             evidence=found.scale,
+            spoils=abs(math.log(found.scale)) > math.log(_WRONG),
+        )
+
+
+class GyroLate(Check):
+    """A gyro, learned from beside positions, whose stamps are later than theirs."""
+
+    kind, family, spoils, reserves = "gyro-late", "clocks", False, True
+    means = "the gyro is stamped later than positions of the same motion: a queue, or another clock"
+    shows = "windows of 25 s agree best with it 0.1 s later, by 4 deviations; from 0.3 s on it spoils"
+    cure = f"stamp the gyro when it is measured, or leave `{COLUMN}` out"
+
+    def look_at(self, whole: WholeLog) -> Finding | None:
+        """Compare the gyro with the track of each run."""
+        found = gyro_scale(whole.log.runs)
+        if found is None or not found.fits or found.late <= max(_LATER, _CERTAIN * found.late_std):
+            return None
+        return self.found(
+            f"the gyro is stamped {estimate_text(found.late, found.late_std)} s later than positions of the "
+            "same motion: the delay of turning is wrong by it",
+            f"Stamp the gyro when it is measured, or leave {COLUMN} out.",
+            evidence=found.late,
+            spoils=found.late > _LATE_SPOILS,
         )
 
 
@@ -77,8 +110,10 @@ class TrackScale:
 
     scale: float
     std: float
-    late: float  # s that its stamps are later than those of the positions
+    late: float  # s that its stamps are later than those of the positions; of slip to a side, earlier
+    late_std: float
     windows: int
+    fits: bool  # the track, at that scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +128,17 @@ class _Window:
             turned = self.gyro.at(self.t + late + _AROUND)
             self._turns[late] = turned - turned.mean(), (turned[-1] - turned[0]) / (2.0 * _HALF)
         return self._turns[late]
+
+    @property
+    def squares(self) -> float:
+        """The sum of the squares of velocities [m2/s2]."""
+        return float(np.sum(np.abs(self.velocity) ** 2))
+
+    @cached_property
+    def noise(self) -> float:
+        """What noise of the positions, as their roughness shows it, adds to the squares to one side."""
+        rough = np.diff(self.velocity, 2)  # of six times the variance, where chords share no end
+        return float(np.sum(np.abs(rough) ** 2)) / 12.0
 
     def begun(self, scale: float, late: float) -> tuple[float, float, float, float]:
         """Return the least sum of squares sideways, with the heading, the bias and the arm for it."""
@@ -150,15 +196,20 @@ def _without(known: Floats, rows: Floats) -> Floats:
 
 def gyro_scale(runs: Iterable[Run]) -> TrackScale | None:
     """Return how far a gyro beside positions turns; None where too few windows say it."""
+    return _track_scale(tuple(runs))
+
+
+@lru_cache(maxsize=1)  # two checks ask
+def _track_scale(runs: tuple[Run, ...]) -> TrackScale | None:
     windows = [window for run in runs for window in _windows(run)]
     if len(windows) < _FEWEST_WINDOWS:
         return None
     some = windows[:: max(1, len(windows) // _ROUGH)]
-    scale, late = min(
-        product(_SCALES.tolist(), _LATE.tolist()), key=lambda at: sum(each.begun(*at)[0] for each in some)
-    )
+    scale, late = _begun(some)
+    if _left_over(some, (scale, late)) > _MISFITS:
+        return TrackScale(scale, math.nan, late, math.nan, len(windows), fits=False)
     state = np.array((scale, late, np.median([each.begun(scale, late)[3] for each in windows])))
-    std = np.nan
+    std = np.full(2, np.nan)
     for _ in range(_ROUNDS):
         kept = _usual([window.left(*state.tolist()) for window in windows])
         information = sum((by.T @ by for _, by in kept), np.zeros((3, 3)))
@@ -167,12 +218,32 @@ def gyro_scale(runs: Iterable[Run]) -> TrackScale | None:
         gradients = np.array([by.T @ rows for rows, by in kept])
         inverse = np.asarray(np.linalg.inv(information), dtype=np.float64)
         state = state - inverse @ gradients.sum(axis=0)
-        if not (0.5 < state[0] < 2.0 and abs(state[1]) < _LATEST):
+        if not (_SMALLEST < state[0] < _LARGEST and abs(state[1]) < _LATEST):
             return None
         std = _std(kept, inverse, gradients)
-    return (
-        TrackScale(float(state[0]), std, float(state[1]), len(kept)) if len(kept) >= _FEWEST_WINDOWS else None
-    )
+    if len(kept) < _FEWEST_WINDOWS:
+        return None
+    (scale, late, _), deviations = state.tolist(), std.tolist()
+    fits = _left_over(windows, (scale, late)) < _MISFITS
+    return TrackScale(scale, deviations[0], late, deviations[1], len(kept), fits)
+
+
+def _begun(some: Sequence[_Window]) -> tuple[float, float]:
+    """Return the scale, and how late, that fit best; far ones are tried where no near one fits."""
+    best = _best(some, product(_SCALES.tolist(), _LATE.tolist()))
+    if _left_over(some, best) < _FITS:
+        return best
+    return _best(some[::_FEWER], (best, *product(_FAR.tolist(), _LATE[::2].tolist())))
+
+
+def _best(some: Sequence[_Window], tried: Iterable[tuple[float, float]]) -> tuple[float, float]:
+    return min(tried, key=lambda at: sum(each.begun(*at)[0] for each in some))
+
+
+def _left_over(some: Sequence[_Window], at: tuple[float, float]) -> float:
+    """Return which part of the squares of velocities is sideways, and not by noise of the positions."""
+    left, squares = sum(each.begun(*at)[0] for each in some), sum(each.squares for each in some)
+    return max(left - _NOISY * sum(each.noise for each in some), 0.0) / max(squares, 1e-12)
 
 
 def _usual(parts: Sequence[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
@@ -180,14 +251,13 @@ def _usual(parts: Sequence[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]
     return [part for part, size in zip(parts, sizes, strict=True) if size <= _OUTLIER * np.median(sizes)]
 
 
-def _std(kept: Sequence[tuple[Floats, Floats]], inverse: Floats, gradients: Floats) -> float:
-    """Return the standard deviation of the scale, as windows scatter or as their rows do."""
+def _std(kept: Sequence[tuple[Floats, Floats]], inverse: Floats, gradients: Floats) -> Floats:
+    """Return the standard deviations of scale and lateness, as windows scatter or as their rows do."""
     count, free = len(kept), sum(len(rows) - 2 for rows, _ in kept) - 3
     rows = sum(float(rows @ rows) for rows, _ in kept) / free * 2.0 * _HALF / _STEP  # chords overlap
-    scatter = (inverse @ gradients.T @ gradients @ inverse)[0, 0] * count / (count - 2)
-    return float(
-        np.sqrt(max(scatter, inverse[0, 0] * rows)) * (1.0 + 4.0 / count)
-    )  # few may be alike by chance
+    scatter = np.diag(inverse @ gradients.T @ gradients @ inverse)[:2] * count / (count - 2)
+    of_rows = np.diag(inverse)[:2] * rows
+    return np.sqrt(np.maximum(scatter, of_rows)) * (1.0 + 4.0 / count)  # few may be alike by chance
 
 
 def _windows(run: Run) -> Iterator[_Window]:

@@ -22,7 +22,7 @@ _MOST_TURN = 0.8  # [rad] of the poses, on which the ends of a way tell its dire
 _MOST_ROTATION = 1.2  # [rad] by the inputs
 _EXPLAINED, _NOT_EXPLAINED = 0.5, 0.3  # parts of the squares
 _BY_SIDEWAYS = 0.5  # of the root mean square of ways to the left, which the sideways speed gives
-_FAR = 0.3  # of the usual way ahead, to a side that nothing tells of; real logs have 0.15 at most
+_FAR = 0.4  # of the usual way ahead, to a side that nothing tells of; real logs have 0.15, hills 0.3
 _UNIT = 3.0  # times as much, or as little, as of the speed ahead
 _SO = 0.5  # correlation of sizes, of a speed without its sign
 
@@ -77,7 +77,7 @@ class SidewaysSpeed(Check):
         """Look at four gains that explain the ways."""
         ahead, left = ways.fitted
         by_sideways = max(abs(left.sideways), abs(left.forward)) * _size(ways.sideways)
-        if by_sideways < _BY_SIDEWAYS * _size(ways.left):
+        if not ways.sideways.any() or by_sideways < _BY_SIDEWAYS * _size(ways.left):
             return None
         gains = np.array([[ahead.forward, ahead.sideways], [left.forward, left.sideways]])
         mirrored = float(np.linalg.det(gains))

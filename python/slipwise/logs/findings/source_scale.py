@@ -116,6 +116,14 @@ def _seen(poses: Poses, t: Floats) -> NDArray[np.bool_]:
     return np.asarray(near & (poses.frame[before] == frame) & (poses.frame[after] == frame))
 
 
+def seen_at(poses: Poses, ends: Floats) -> bool:
+    """Say whether a source has poses about some times in order, without a gap, and in one frame."""
+    first, last = np.searchsorted(poses.t, (ends[0] - _STEP, ends[-1] + _STEP)).tolist()
+    first, last = max(first - 1, 0), min(last, len(poses) - 1)
+    t, frame = poses.t[first : last + 1], poses.frame[first : last + 1]
+    return bool((np.diff(t) < _LONGEST_STEP + 2.0 * _STEP).all() and (frame == frame[0]).all())
+
+
 def _track(poses: Poses, t: Floats) -> tuple[Complex, Complex]:
     """Return positions [N] in m and velocities [N] in m/s, as complex numbers."""
 

@@ -265,6 +265,18 @@ def test_poses_of_a_further_source_are_held_against_the_inputs_too(poses: Log, k
         assert each.advice[-1] == "Or leave out odom."
 
 
+def test_two_sources_that_turn_by_different_angles_spoil_the_model() -> None:
+    sound = sound_log(replace(SKID_STEERED, seconds=150.0))
+    (run,) = sound.runs
+    more = replace(run.poses, yaw=1.3 * np.unwrap(run.poses.yaw))
+    both = replace(sound, runs=(replace(run, source="lidar", others={"odom": more}),))
+    found = [each for each in findings_of(both, "wheel") if each.kind == "source-turns"]
+    assert len(found) == 1
+    assert found[0].spoils
+    assert found[0].evidence == pytest.approx(1.3, abs=0.02)
+    assert "odom turns 1.30" in found[0].sentence
+
+
 def test_poses_that_begin_to_repeat_the_wheels_are_found_in_the_last_two_minutes() -> None:
     (run,) = LONG.runs
     assert run.wheels is not None

@@ -13,7 +13,7 @@ from sample_positions import ANTENNA, BASIS, SECONDS, SETTINGS, SLIP, commands
 from slipwise.calibration import calibrate
 from slipwise.logs import Log, Run, open_log
 from slipwise.logs.findings.finding import Finding
-from slipwise.logs.findings.gyro_scale import GyroScale, gyro_scale
+from slipwise.logs.findings.gyro_scale import GyroLate, GyroScale, gyro_scale
 from slipwise.logs.findings.seen import WholeLog
 from slipwise_sim.known_robot import KnownRobot, known_run
 
@@ -89,3 +89,28 @@ def test_no_gyro_of_a_real_log_without_its_headings_is_said_to_turn_otherwise(
         monkeypatch.setattr(f"{GyroScale.__module__}.gyro_scale", lambda _, scale=scale: scale)  # once
         assert found_in(*runs) is None, path.name
     assert known >= 6
+
+
+@pytest.mark.parametrize("scale", [0.25, 0.5, 4.0])
+def test_a_gyro_of_another_range_spoils_the_model(scale: float) -> None:
+    found = found_in(drive(scale))
+    assert found is not None
+    assert found.spoils
+    assert found.evidence == pytest.approx(scale, rel=0.03)
+
+
+def test_turns_that_fit_the_track_at_no_scale_are_no_scale() -> None:
+    run = drive(1.0)
+    found = found_in(replace(run, extra={**run.extra, "gyro_z": run.extra["gyro_z"] + 0.5}))
+    assert found is not None
+    assert found.spoils
+    assert "at no scale" in found.sentence
+
+
+@pytest.mark.parametrize(("late", "spoils"), [(0.05, None), (0.2, False), (0.5, True)])
+def test_a_late_gyro_is_said_with_how_late_it_is(late: float, *, spoils: bool | None) -> None:
+    run = drive(1.0)
+    later = replace(run, extra={**run.extra, "t": run.extra["t"] - LATE + late})
+    found = GyroLate().look_at(WholeLog(Log((later,)), "wheel"))
+    assert (None if found is None else found.spoils) == spoils
+    assert found is None or found.evidence == pytest.approx(late, abs=0.05)

@@ -24,7 +24,7 @@ def mecanum_log() -> Log:
     (run,) = sound.runs
     assert run.wheels is not None
     w, rng = run.wheels, np.random.default_rng(4)
-    vy = np.repeat(rng.uniform(-0.6, 0.6, len(w) // 40 + 1), 40)[: len(w)]
+    vy = np.repeat(rng.uniform(-0.9, 0.9, len(w) // 40 + 1), 40)[: len(w)]
     wheels = replace(w, vy=vy)
     poses = dead_reckoned(replace(w, v=0.95 * w.v, vy=0.85 * vy, omega=0.6 * w.omega))
     x, y = (each + 0.005 * rng.standard_normal(len(poses)) for each in (poses.x, poses.y))
