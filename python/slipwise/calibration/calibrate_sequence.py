@@ -24,8 +24,10 @@ from slipwise.calibration.result import Calibration
 from slipwise.calibration.same_log import refuse_same_log
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
 from slipwise.calibration.settings_for_log import for_the_ground_of
+from slipwise.calibration.surface_labels import named_seconds, overruled
 from slipwise.calibration.surface_sections import with_memory
 from slipwise.errors import LogError, SettingsError
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.log import Log
 from slipwise.logs.open_log import joined
 from slipwise.models.model import Model
@@ -85,6 +87,7 @@ def calibrate_sequence(
     learned = sequence.learned
     assert learned is not None  # it was asked to be kept
     found = found_contradictions(learned, windows.drive, (log, input_name, settings), start)
+    found += _overruled(drives, sequence, options)
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     kept = learned.kept.structure, learned.kept.motion
     mounts = learned_mounts(learned, log, settings)
@@ -100,6 +103,19 @@ def calibrate_sequence(
         mounts=mounts,
     )
     return calibration, sequence
+
+
+def _overruled(
+    drives: Sequence[Sequence[PreparedRun]], sequence: LearnedSequence, options: SequenceOptions
+) -> tuple[Finding, ...]:
+    """Return which labels of the logs, or given for them, no surface is called by."""
+    if options.terrain is not None:  # windows are probabilities, not names
+        return ()
+    named: dict[str, float] = {}  # s
+    for drive, label in zip(drives, options.labels or ("",) * len(drives), strict=True):
+        for name, seconds in named_seconds(drive, label).items():
+            named[name] = named.get(name, 0.0) + seconds
+    return overruled(named, {surface.name for surface in sequence.surfaces})
 
 
 def settings_of(model: Model) -> Settings:

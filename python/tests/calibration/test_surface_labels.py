@@ -10,7 +10,14 @@ import pytest
 from sample_surfaces import FIRM, floor_log
 
 from slipwise.calibration.prepared_run import prepare_run
-from slipwise.calibration.surface_labels import date_of, given_labels, label_at_start, labels_of
+from slipwise.calibration.surface_labels import (
+    date_of,
+    given_labels,
+    label_at_start,
+    labels_of,
+    named_seconds,
+    overruled,
+)
 from slipwise.errors import SettingsError
 from slipwise.logs import Run
 
@@ -56,3 +63,18 @@ def test_the_date_is_that_of_the_first_stamp_where_stamps_count_from_1970() -> N
     assert run.wheels is not None
     later = replace(later, commands=None, wheels=replace(run.wheels, t=run.wheels.t + 1.7e9))
     assert date_of(prepare_run(replace(log, runs=(later,)), "wheel")) == "2023-11-14"
+
+
+def test_a_surface_that_labels_name_and_nothing_remembers_is_said() -> None:
+    run = run_with("sand", "", "", "", "", "", "", "ice", "", "")  # 9 s
+    log = replace(floor_log(FIRM, 1, seconds=10.0), runs=(run,))
+    (drive,) = [prepare_run(log, "wheel")]
+    named = named_seconds(drive)
+    assert named["sand"] == pytest.approx(7.0, abs=0.2)
+    assert named["ice"] == pytest.approx(3.0, abs=0.3)
+    assert named_seconds(drive, "mud") == {"mud": pytest.approx(10.0, abs=0.3)}
+    assert overruled(named, set()) == ()  # too short to be remembered
+    assert overruled({"sand": 90.0, "ice": 60.0}, {"sand", "ice"}) == ()
+    (found,) = overruled({"sand": 90.0, "ice": 60.0}, {"sand"})
+    assert (found.spoils, found.reserves) == (False, True)
+    assert "name ice for 60 s" in found.sentence
