@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finds two sources of poses of one drive whose tracks differ in size, as of a map that is too large.
 
-In windows of twenty seconds the track of the further source is laid on that of the first by the similarity
-that fits best, whatever frame it is in. Where it sits on the robot and how late it is are free, so that
-neither passes for a scale; on a circle, where an arm cannot be told from a scale, nothing is said.
+In windows of twenty seconds, or ten of a short drive, the track of the further source is laid on that of
+the first by the similarity that fits best, whatever frame it is in. Where it sits on the robot and how late
+it is are free, so that neither passes for a scale; on a circle, where an arm cannot be told from a scale,
+nothing is said.
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ if TYPE_CHECKING:
 
 Complex = NDArray[np.complex128]
 
-_WINDOW = 20.0  # s
+_WINDOWS = (20.0, 10.0)  # s; the shorter ones where there are few of the others
 _STEP = 0.5  # s between what is compared in it
-_FEWEST_STEPS, _FEWEST_WINDOWS = 20, 4
+_FEWEST_STEPS, _FEWEST_WINDOWS = 0.5, 4  # of those of a window
 _LONGEST_STEP = 1.0  # s between poses of a source, on a straight line between which it is taken to be
 _LEAST_WAY = 0.3  # m that positions scatter in a window beyond what arm and lateness explain,
 _BEYOND_NOISE = 5.0  # and so many times what the best similarity leaves
@@ -61,8 +62,12 @@ class SourceScale(Check):
         return max(found, key=lambda each: abs(np.log(each.evidence or 1.0)), default=None)
 
     def _beside(self, name: str, runs: Sequence[Run]) -> Finding | None:
-        fits = [fit for run in runs if name in run.others for fit in _fits(run.poses, run.others[name])]
-        if len(fits) < _FEWEST_WINDOWS:
+        both = [(run.poses, run.others[name]) for run in runs if name in run.others]
+        for window in _WINDOWS:
+            fits = [fit for pair in both for fit in _fits(*pair, window)]
+            if len(fits) >= _FEWEST_WINDOWS:
+                break
+        else:
             return None
         scale, std, bias = _together(fits)
         if abs(scale) <= max(_APART, _CERTAIN * std) + bias:
@@ -90,16 +95,16 @@ def _together(fits: Sequence[_Fit]) -> tuple[float, float, float]:
     return median, 1.25 * factor * float(weight.sum()) ** -0.5, float(weight @ bias / weight.sum())
 
 
-def _fits(first: Poses, other: Poses) -> Iterator[_Fit]:
-    """Yield what each window says that both see, in one frame each."""
+def _fits(first: Poses, other: Poses, window: float) -> Iterator[_Fit]:
+    """Yield what each window [s] says that both see, in one frame each."""
     if min(len(first), len(other)) < 2:
         return
     begin, stop = max(first.t[0], other.t[0]) + _STEP, min(first.t[-1], other.t[-1]) - _STEP
     yaw = np.unwrap(first.yaw)
-    for start in np.arange(begin, stop - _WINDOW, _WINDOW).tolist():
-        t = np.arange(start, start + _WINDOW, _STEP)
+    for start in np.arange(begin, stop - window, window).tolist():
+        t = np.arange(start, start + window, _STEP)
         t = t[_seen(first, t) & _seen(other, t)]
-        if len(t) < _FEWEST_STEPS:
+        if len(t) < _FEWEST_STEPS * window / _STEP:
             continue
         heading = np.exp(1j * np.interp(t, first.t, yaw))
         fit = _fit(_track(first, t), _track(other, t), heading)

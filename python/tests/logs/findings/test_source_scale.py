@@ -54,6 +54,18 @@ def test_another_scale_is_said_with_the_ratio(scale: float) -> None:
     assert "--pose-topic" in " ".join(found.advice)
 
 
+def test_a_minute_that_both_see_tells_a_scale_of_a_tenth() -> None:
+    def short(scale: float) -> Finding | None:
+        run = beside(drive(), scale)
+        begun = run.poses.t < run.poses.t[0] + 60.0
+        return found_in(replace(run, poses=run.poses.select(begun)))
+
+    found = short(1.1)
+    assert found is not None
+    assert found.evidence == pytest.approx(1.1, abs=0.03)
+    assert short(1.0) is None
+
+
 def test_an_arm_lateness_and_noise_are_no_scale() -> None:
     assert found_in(beside(drive(), 1.0)) is None
     assert found_in(beside(drive(), 1.0, std=0.3)) is None
