@@ -44,7 +44,8 @@ _LEAST_WAY, _LEAST_TURN = 1.0, 0.5  # m and rad of a window
 _LATEST = 1.0  # s that the gyro may be later than the positions, or earlier
 _SCALES, _LATE = np.exp(0.1 * np.arange(-4, 5)), np.arange(-0.9, 1.0, 0.1)  # where the search begins,
 _FAR = np.exp(0.1 * np.concatenate((np.arange(-26, -4), np.arange(5, 19))))  # and where nothing near fits
-_FITS, _MISFITS = 0.01, 0.05  # of the squares of velocities, that the right scale leaves, and that none does
+_FITS, _MISFITS = 0.01, 0.05  # of the squares of velocities, that the right scale leaves, and that none does,
+_NEVER = 0.1  # and that no sliding does: of steep hills it is 0.04
 _FEWER, _NOISY = 3, 2.0  # of the windows that near scales were tried in; times the noise that is explained
 _SMALLEST, _LARGEST = 0.05, 7.0  # of the scale
 _BIASES = np.linspace(-0.06, 0.06, 25)  # rad/s
@@ -68,8 +69,13 @@ class GyroScale(Check):
         """Compare the gyro with the track of each run."""
         found = gyro_scale(whole.log.runs)
         if found is not None and not found.fits:
-            what = "the turns of the gyro fit the track of the positions at no scale: slip of turns is wrong"
-            return self.found(what, f"Look at {COLUMN}, its bias and its unit, or leave it out.", spoils=True)
+            return self.found(
+                "the turns of the gyro fit the track of the positions at no scale: slip of turns is wrong, "
+                "or the robot slides to its sides",
+                f"Look at {COLUMN}, its bias and its unit, or leave it out.",
+                evidence=found.left_over,
+                spoils=found.left_over > _NEVER or found.scale <= _FAR[0],  # as if it did not turn
+            )
         if found is None or abs(found.scale - 1.0) <= max(_APART, _CERTAIN * found.std):
             return None
         return self.found(
@@ -113,7 +119,12 @@ class TrackScale:
     late: float  # s that its stamps are later than those of the positions; of slip to a side, earlier
     late_std: float
     windows: int
-    fits: bool  # the track, at that scale
+    left_over: float  # of the squares of velocities, to a side at that scale
+
+    @property
+    def fits(self) -> bool:
+        """Whether the track is one of a robot that turns so."""
+        return self.left_over < _MISFITS
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,8 +217,9 @@ def _track_scale(runs: tuple[Run, ...]) -> TrackScale | None:
         return None
     some = windows[:: max(1, len(windows) // _ROUGH)]
     scale, late = _begun(some)
-    if _left_over(some, (scale, late)) > _MISFITS:
-        return TrackScale(scale, math.nan, late, math.nan, len(windows), fits=False)
+    left_over = _left_over(some, (scale, late))
+    if left_over > _MISFITS:
+        return TrackScale(scale, math.nan, late, math.nan, len(windows), left_over)
     state = np.array((scale, late, np.median([each.begun(scale, late)[3] for each in windows])))
     std = np.full(2, np.nan)
     for _ in range(_ROUNDS):
@@ -224,8 +236,8 @@ def _track_scale(runs: tuple[Run, ...]) -> TrackScale | None:
     if len(kept) < _FEWEST_WINDOWS:
         return None
     (scale, late, _), deviations = state.tolist(), std.tolist()
-    fits = _left_over(windows, (scale, late)) < _MISFITS
-    return TrackScale(scale, deviations[0], late, deviations[1], len(kept), fits)
+    left_over = _left_over(windows, (scale, late))
+    return TrackScale(scale, deviations[0], late, deviations[1], len(kept), left_over)
 
 
 def _begun(some: Sequence[_Window]) -> tuple[float, float]:
@@ -262,7 +274,7 @@ def _std(kept: Sequence[tuple[Floats, Floats]], inverse: Floats, gradients: Floa
 
 def _windows(run: Run) -> Iterator[_Window]:
     poses, gyro = run.poses, turned_by(gyro_rows(run))
-    if gyro is None or len(poses) < _FEWEST_STEPS:
+    if gyro is None or len(poses) < _FEWEST_STEPS or _drives_sideways(run):
         return
     for start in np.arange(poses.t[0] + _HALF, poses.t[-1] - _WINDOW - _HALF, _WINDOW).tolist():
         t = start + _STEP * np.arange(round(_WINDOW / _STEP))
@@ -277,6 +289,10 @@ def _windows(run: Run) -> Iterator[_Window]:
         way = _STEP * float(np.abs(window.velocity).sum())
         if way > _LEAST_WAY and np.ptp(gyro.at(t)) > _LEAST_TURN:
             yield window
+
+
+def _drives_sideways(run: Run) -> bool:
+    return any(given is not None and bool(given.vy.any()) for given in (run.commands, run.wheels))
 
 
 def _seen(poses: Poses, t: Floats) -> NDArray[np.bool_]:
