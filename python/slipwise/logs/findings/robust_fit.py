@@ -11,13 +11,16 @@ _HUBER, _ROUNDS = 1.5, 6  # standard deviations beyond which a window counts les
 _MEDIAN = 1.4826  # standard deviations in a median of absolute values
 
 
-def robust_fit(inputs: Floats, values: Floats) -> Floats:
-    """Return gains [K] of inputs [N, K] that give values [N], by Huber's weights (Ann. Math. Stat. 1964)."""
-    return weighted_fit(inputs, values)[0]
+def robust_fit(inputs: Floats, values: Floats) -> tuple[Floats, Floats, float]:
+    """Fit by Huber's weights (Ann. Math. Stat. 1964).
 
+    Args:
+        inputs: [N, K].
+        values: [N] that gains of the inputs give.
 
-def weighted_fit(inputs: Floats, values: Floats) -> tuple[Floats, Floats, float]:
-    """Return the gains [K], the weights [N] they came of, and the usual size of what is left."""
+    Returns:
+        The gains [K], the weights [N] they came of, and the usual size of what is left.
+    """
     weight, usual = np.ones(len(values)), 0.0
     gains = np.zeros(inputs.shape[1])
     for _ in range(_ROUNDS):

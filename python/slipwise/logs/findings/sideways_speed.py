@@ -42,28 +42,30 @@ class SidewaysSpeed(Check):
         ways = _ways(seen)
         if seen.positions or ways is None:
             return None
-        ahead, left = ways.fitted
-        if ahead.explained < _EXPLAINED:
+        ahead, left = ways.explained
+        if ahead < _EXPLAINED:
             return None
-        if left.explained > _NOT_EXPLAINED:
+        if left > _NOT_EXPLAINED:
             return self._of_gains(ways, seen.words.name)
         return self._lost_sign(ways, seen.words.name) or self._left_out(ways, seen.words.name)
 
     def _lost_sign(self, ways: _Ways, name: str) -> Finding | None:
         """Compare how far poses and inputs go sideways, whichever way."""
-        sizes = [np.abs(each) - np.abs(each).mean() for each in (ways.left, ways.sideways)]
-        if not ways.sideways.any() or correlation(*sizes) < _SO:
+        sizes = [np.abs(each) - np.abs(each).mean() for each in (ways.moved[:, 1], ways.given[:, 1])]
+        alike = correlation(*sizes) if ways.sideways else 0.0
+        if alike < _SO:
             return None
         return self.found(
             f"the poses move as far sideways as the {name} say, but to either side: the sideways speed lost "
             "its sign",
             "Record the sideways speed with its sign: to the left is positive.",
-            evidence=correlation(*sizes),
+            evidence=alike,
         )
 
     def _left_out(self, ways: _Ways, name: str) -> Finding | None:
         """Look how far poses go to sides that no input tells of."""
-        usual, off = float(np.median(np.abs(ways.ahead))), float(np.median(np.abs(ways.left - ways.by_fit)))
+        usual = float(np.median(np.abs(ways.moved[:, 0])))
+        off = float(np.median(np.abs(ways.left_over[:, 1])))
         if off < max(_FAR * usual, _LEAST):
             return None
         return self.found(
@@ -75,11 +77,10 @@ class SidewaysSpeed(Check):
 
     def _of_gains(self, ways: _Ways, name: str) -> Finding | None:
         """Look at four gains that explain the ways."""
-        ahead, left = ways.fitted
-        by_sideways = max(abs(left.sideways), abs(left.forward)) * _size(ways.sideways)
-        if not ways.sideways.any() or by_sideways < _BY_SIDEWAYS * _size(ways.left):
+        gains = ways.gains[:2].T  # of ways ahead and to the left, by what is driven ahead and to the left
+        forward, sideways = _sizes(ways.given[:, :2])
+        if not ways.sideways or np.abs(gains[1]).max() * sideways < _BY_SIDEWAYS * _sizes(ways.moved)[1]:
             return None
-        gains = np.array([[ahead.forward, ahead.sideways], [left.forward, left.sideways]])
         mirrored = float(np.linalg.det(gains))
         if mirrored < 0.0:
             own, other = abs(gains[0, 0] * gains[1, 1]), abs(gains[0, 1] * gains[1, 0])
@@ -91,7 +92,7 @@ class SidewaysSpeed(Check):
                 evidence=mirrored,
             )
         times = abs(gains[1, 1]) / abs(gains[0, 0])
-        across = abs(gains[0, 1]) * _size(ways.sideways) > abs(gains[0, 0]) * _size(ways.forward)
+        across = abs(gains[0, 1]) * sideways > abs(gains[0, 0]) * forward
         if 1.0 / _UNIT < times < _UNIT or across:  # a frame that is turned
             return None
         return self.found(
@@ -102,23 +103,30 @@ class SidewaysSpeed(Check):
         )
 
 
-@dataclass(frozen=True)
-class _Fitted:
-    forward: float  # m for each metre that is driven ahead by the inputs
-    sideways: float  # the same, of what is driven to the left
-    explained: float  # part of the squares
-
-
 @dataclass(frozen=True, eq=False)
 class _Ways:
-    """What poses move ahead and to the left on the robot, in N windows."""
+    """What poses move ahead and to the left on the robot in N windows, fitted to the inputs."""
 
-    ahead: Floats  # [N] m
-    left: Floats  # [N] m
-    by_fit: Floats  # [N] m to the left, by what the inputs drive and turn
-    forward: Floats  # [N] m, by the inputs
-    sideways: Floats  # [N] m, the same
-    fitted: tuple[_Fitted, _Fitted]  # ahead, left
+    moved: Floats  # [N, 2] m
+    given: Floats  # [N, 3] m and rad: forward, sideways, rotation
+    gains: Floats  # [3, 2]
+
+    @property
+    def sideways(self) -> bool:
+        """Whether the inputs drive sideways."""
+        return bool(self.given[:, 1].any())
+
+    @property
+    def left_over(self) -> Floats:
+        """What the fit does not give [N, 2] m."""
+        return np.asarray(self.moved - self.given @ self.gains)
+
+    @property
+    def explained(self) -> tuple[float, float]:
+        """Which part of the squares ahead and to the left the fit gives."""
+        left, all_ = (np.sum(each**2, axis=0) for each in (self.left_over, self.moved))
+        ahead, aside = (1.0 - left / np.maximum(all_, 1e-12)).tolist()
+        return ahead, aside
 
 
 def _ways(seen: Seen) -> _Ways | None:
@@ -129,25 +137,12 @@ def _ways(seen: Seen) -> _Ways | None:
     if int(near.sum()) < _ENOUGH:
         return None
     way = (w.distance * np.exp(1j * w.course_ahead(seen.sensor_yaw)))[near]
-    inputs = np.column_stack((w.forward, w.sideways, w.rotation))[near]
-    fits = [robust_fit(inputs, each) for each in (way.real, way.imag)]
-    parts = [
-        1.0 - float(np.sum((each - inputs @ gains) ** 2) / max(float(np.sum(each**2)), 1e-12))
-        for each, gains in zip((way.real, way.imag), fits, strict=True)
-    ]
-    return _Ways(
-        way.real,
-        way.imag,
-        inputs @ fits[1],
-        inputs[:, 0],
-        inputs[:, 1],
-        (
-            _Fitted(float(fits[0][0]), float(fits[0][1]), parts[0]),
-            _Fitted(float(fits[1][0]), float(fits[1][1]), parts[1]),
-        ),
-    )
+    moved = np.column_stack((way.real, way.imag))
+    given = np.column_stack((w.forward, w.sideways, w.rotation))[near]
+    return _Ways(moved, given, np.column_stack([robust_fit(given, each)[0] for each in moved.T]))
 
 
-def _size(values: Floats) -> float:
-    """Return the root mean square."""
-    return float(np.sqrt(np.mean(values**2)))
+def _sizes(values: Floats) -> tuple[float, float]:
+    """Return the root mean squares of two columns."""
+    first, second = np.sqrt(np.mean(values**2, axis=0)).tolist()
+    return first, second

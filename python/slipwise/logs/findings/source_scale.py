@@ -27,7 +27,7 @@ Complex = NDArray[np.complex128]
 
 _WINDOWS = (20.0, 10.0)  # s; the shorter ones where there are few of the others
 _STEP = 0.5  # s between what is compared in it
-_FEWEST_STEPS, _FEWEST_WINDOWS = 0.5, 4  # of those of a window
+_SEEN_PART, _FEWEST_WINDOWS = 0.5, 4  # of a window, that both see; such windows
 _LONGEST_STEP = 1.0  # s between poses of a source, on a straight line between which it is taken to be
 _LEAST_WAY = 0.3  # m that positions scatter in a window beyond what arm and lateness explain,
 _BEYOND_NOISE = 5.0  # and so many times what the best similarity leaves
@@ -104,7 +104,7 @@ def _fits(first: Poses, other: Poses, window: float) -> Iterator[_Fit]:
     for start in np.arange(begin, stop - window, window).tolist():
         t = np.arange(start, start + window, _STEP)
         t = t[_seen(first, t) & _seen(other, t)]
-        if len(t) < _FEWEST_STEPS * window / _STEP:
+        if len(t) < _SEEN_PART * window / _STEP:
             continue
         heading = np.exp(1j * np.interp(t, first.t, yaw))
         fit = _fit(_track(first, t), _track(other, t), heading)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from slipwise.logs.findings.finding import Check, Finding
-from slipwise.logs.findings.robust_fit import weighted_fit
+from slipwise.logs.findings.robust_fit import robust_fit
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import Seen
@@ -112,7 +112,7 @@ def _squares_left(sums: Floats) -> Floats:
 def _line(way: Floats, wheels: Floats, poses: Floats) -> _Line:
     """Fit a line that few windows which go astray do not bend."""
     inputs = np.stack((way, wheels), axis=1)
-    gains, weight, usual = weighted_fit(inputs, poses)
+    gains, weight, usual = robust_fit(inputs, poses)
     normal = (inputs * weight[:, None]).T @ inputs
     both = float(normal[0, 0] * normal[1, 1])
     alike = abs(float(normal[0, 1])) / np.sqrt(both) if both > 0.0 else 1.0
