@@ -27,30 +27,40 @@ void for_each(const Averages& averages, const Use& use) {
 
 }  // namespace
 
+void Driven::see(const InputHistory& inputs, const Segment& segment) {
+  seconds += segment.end - segment.start;
+  ++segments;
+  speeds.see(inputs, segment);
+}
+
+void Driven::take_in(const Driven& later) {
+  if (later.segments > 0) {
+    seconds += later.seconds;
+    segments += later.segments;
+    speeds.begin_with(later.speeds.reference(), later.seconds);
+  }
+}
+
 SurfaceBank::SurfaceBank(const SurfaceSettings& settings) : settings_(settings) {}
 
 void SurfaceBank::see(const InputHistory& inputs, const Segment& segment) {
   if (!settings_.remember) {
     return;
   }
-  seconds_ += segment.end - segment.start;
-  ++segments_;
-  speeds_.see(inputs, segment);
+  (trial_ && !held_ ? driven_in_trial_ : driven_).see(inputs, segment);
 }
 
 /// What was driven since it was taken is counted.
 void SurfaceBank::flush(Surface& surface) {
-  if (segments_ > 0) {
-    surface.speeds = fastest(surface.speeds, speeds_.reference());
+  if (driven_.segments > 0) {
+    surface.speeds = fastest(surface.speeds, driven_.speeds.reference());
   }
-  surface.seconds += seconds_;
-  surface.segments += segments_;
+  surface.seconds += driven_.seconds;
+  surface.segments += driven_.segments;
   surface.last_seen = date_.empty() ? surface.last_seen : date_;
   add_visit(heard_, surface.classes);
   heard_.clear();
-  seconds_ = 0.0;
-  segments_ = 0;
-  speeds_ = {};
+  driven_ = {};
 }
 
 /// As it is now; a surface that was hardly driven is not kept.
@@ -59,12 +69,14 @@ void SurfaceBank::keep_present(const Averages& averages, const DisturbanceModel&
     return;
   }
   for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(kNow); });
+  driven_.take_in(std::exchange(driven_in_trial_, {}));
   leave_present(averages, law);
 }
 
 /// What was known of the present surface at parting is remembered.
 void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel& law) {
-  if (!surfaces_.present() && std::cmp_less(segments_, settings_.fewest)) {
+  const int fewest = wanted_.empty() ? settings_.fewest : settings_.soonest;  // a label says that there is one
+  if (!surfaces_.present() && std::cmp_less(driven_.segments, fewest)) {
     return;
   }
   Surface& surface =
@@ -271,7 +283,8 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
   SurfaceCandidate taken = candidates[decision.known];
   double probability = decision.probability;
   const bool named = taken.kind == Kind::Known && surfaces_[taken.place].name == label_;
-  const bool suspected = !decision.sure && !at_start && trial.probabilities()[0] >= settings_.doubt;
+  const bool labelled = at_once && !label_.empty() && (another ? !surfaces_.taken(label_) : named);
+  const bool suspected = !decision.sure && !at_start && !labelled && trial.probabilities()[0] >= settings_.doubt;
   const bool apart = !decision.sure && at_start && !named;  // is kept apart until it is known better
   if (!suspected && (another || apart)) {
     taken = {.kind = Kind::New};
@@ -291,7 +304,10 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
   if (taken.kind != Kind::Present && !at_start) {
     leave_present(averages, law);
   }
-  if (taken.kind != Kind::Present) {  // what filters find that began before is no change of what is taken
+  if (taken.kind == Kind::Present) {
+    driven_.take_in(std::exchange(driven_in_trial_, {}));
+  } else {  // what filters find that began before is no change of what is taken
+    driven_ = std::exchange(driven_in_trial_, {});
     for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.forget_recent(); });
   }
   hear_on(taken.kind);

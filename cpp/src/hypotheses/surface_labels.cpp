@@ -26,13 +26,17 @@ void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, con
   if (!settings_.remember || same || (open_already && label.empty())) {
     return;
   }
-  if (open_already) {
+  if (open_already && trial_->segments() < settings_.soonest) {
     label_ = label;
     weigh_trial(averages, label_factors(trial_->candidates()).log());
     return;
   }
+  if (open_already) {  // what was driven so far was on one surface
+    settle(averages, law, true);
+  }
   keep_present(averages, law);
   label_ = label;
+  wanted_ = surfaces_.size() == 0 ? label_ : wanted_;  // nothing competes
   suspect(averages, law);
 }
 

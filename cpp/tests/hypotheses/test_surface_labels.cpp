@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -89,6 +91,37 @@ TEST_CASE("a label while a drive goes on recalls its surface at once") {
   const std::size_t visits = learner.surfaces().surfaces().front().visits;
   learner.cue_surface("ice");
   CHECK(learner.surfaces().surfaces().front().visits == visits);
+}
+
+void go_on_with_label(MotionLearner& learner, const std::string& label, double slip, std::uint64_t seed) {
+  learner.cue_surface(label);
+  push(learner, drive_on(slip, seed, 12.0, 100.0 * static_cast<double>(seed)));
+  learner.end_run();
+}
+
+TEST_CASE("surfaces that labels name are kept apart where each stretch is short") {
+  MotionLearner learner(surface_settings(true));
+  learner.start_drive({.label = "ice"});
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    go_on_with_label(learner, i % 2 == 0 ? "ice" : "grass", i % 2 == 0 ? 0.5 : 0.1, 60 + i);
+  }
+  learner.start_drive();
+  const auto surfaces = learner.surfaces().surfaces();
+  REQUIRE(surfaces.size() == 2);
+  CHECK(surfaces[0].name == "ice");
+  CHECK(surfaces[1].name == "grass");
+  for (const Surface& each : surfaces) {
+    CHECK(std::abs(each.seconds - 55.0) < 10.0);  // a stretch of 12 s has 11 whole segments
+  }
+}
+
+TEST_CASE("a label before anything was driven replaces the one of the start") {
+  MotionLearner learner(surface_settings(true));
+  learner.start_drive({.label = "ice"});
+  go_on_with_label(learner, "grass", 0.1, 60);
+  learner.start_drive();
+  REQUIRE(learner.surfaces().surfaces().size() == 1);
+  CHECK(learner.surfaces().surfaces().front().name == "grass");
 }
 
 }  // namespace

@@ -26,6 +26,23 @@ struct DriveStart {
   std::string date = {};
 };
 
+/// How much was driven, and how fast.
+struct Driven {
+  double seconds = 0.0;
+  std::size_t segments = 0;
+  DrivenSpeeds speeds = {};
+
+  void see(const InputHistory& inputs, const Segment& segment);
+  /// What was driven later is of the same surface.
+  void take_in(const Driven& later);
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.seconds, self.segments, self.speeds);
+  }
+};
+
 /// How often labels named the surface that was then taken.
 struct LabelCounts {
   double all = 0.0;
@@ -81,7 +98,7 @@ class SurfaceBank {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.settings_, self.surfaces_, self.seconds_, self.segments_, self.speeds_, self.date_);
+    a(self.settings_, self.surfaces_, self.driven_, self.driven_in_trial_, self.date_);
     a(self.label_, self.wanted_, self.labels_, self.leader_);
     a(self.heard_, self.heard_in_trial_, self.heard_factors_, self.doubted_for_, self.trial_, self.held_);
   }
@@ -110,9 +127,8 @@ class SurfaceBank {
 
   SurfaceSettings settings_;
   SurfaceList surfaces_;
-  double seconds_ = 0.0;      ///< on the present surface since it was taken
-  std::size_t segments_ = 0;  ///< the same
-  DrivenSpeeds speeds_;       ///< the same
+  Driven driven_;           ///< on the present surface since it was taken
+  Driven driven_in_trial_;  ///< since the trial began, on the surface that it will say
   std::string date_;
   std::string label_;   ///< that speaks in the trial
   std::string wanted_;  ///< name of the surface that has no entry yet
