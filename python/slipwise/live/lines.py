@@ -23,6 +23,7 @@ from slipwise.live.outputs import (
     surface_content,
 )
 from slipwise.live.samples import Override, Request, RunStart, Sample, SurfaceCue, Unusable
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.options import LogOptions
 from slipwise.logs.row_reader import RowReader, number_of
 from slipwise.logs.table import EMPTY_CELLS
@@ -53,6 +54,10 @@ class LineReader:
         self._run: str | None = None
         self.columns: set[str] = set()  # that lines had so far
         self.notes: list[str] = []  # what was worked out, since somebody looked
+
+    def found(self) -> tuple[Finding, ...]:
+        """Return what the lines so far show to be wrong."""
+        return self._rows.found()
 
     def read(self, line: str) -> list[Sample]:
         """Return the samples of a line.

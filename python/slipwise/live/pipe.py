@@ -16,6 +16,7 @@ from slipwise.live.lines import MOST_BYTES, LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.samples import Sample, Unusable
 from slipwise.live.stoppable_reader import StoppableReader
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.options import LogOptions
 
 ENDS_WITHIN = 1.0  # s, of a thread that may still hand over a sample
@@ -57,6 +58,10 @@ class Pipe(Feed):
         """Write a result as a line; a reader that went away is no error."""
         if self._results is not None:
             self._results.write(line_of(output))
+
+    def found(self) -> tuple[Finding, ...]:
+        """Return what the lines so far show to be wrong."""
+        return self._reader.found()
 
     def notices(self) -> list[str]:
         """Return what was worked out of lines, and what was wrong with results."""

@@ -15,6 +15,7 @@ from slipwise.live.samples import Command, Pose, Reading, Wheels
 from slipwise.logs.attitude import was_measured
 from slipwise.logs.corrections import OneAttitude, late_by, turned_one
 from slipwise.logs.findings.topics import ZeroCovariance, ZeroTwist
+from slipwise.logs.findings.wheel_layout import LayoutWatch
 from slipwise.logs.fixes import fix_of_status
 from slipwise.logs.gyro import COLUMN as GYRO
 from slipwise.logs.joints import SideMotion
@@ -75,11 +76,15 @@ def to_command(kind: str, options: LogOptions) -> ToCommand:
 
 
 def to_wheels(
-    kind: str, options: LogOptions, say: Callable[[str], None] = _nobody, topic: str = ""
+    kind: str,
+    options: LogOptions,
+    say: Callable[[str], None] = _nobody,
+    topic: str = "",
+    layout: LayoutWatch | None = None,
 ) -> ToWheels:
     """Return what makes a wheel twist of a message of type `kind` and its stamp [s].
 
-    `say` is called with what is found of `topic`.
+    `say` is called with what is found of `topic`; `layout` keeps the readings of described wheels.
 
     Raises:
         SettingsError: joint states need the sizes of the robot.
@@ -94,7 +99,7 @@ def to_wheels(
 
         return twist
     if options.wheels is not None:
-        return _layout_wheels(options.wheels, options.wheel_scale)
+        return _layout_wheels(options.wheels, options.wheel_scale, layout)
     radius, separation = options.wheel_radius, options.wheel_separation
     if radius is None or separation is None:
         raise SettingsError(
@@ -138,7 +143,9 @@ class _OdometryTwists:
         return last[0], v, vy, omega
 
 
-def _layout_wheels(vehicle: VehicleDescription, scale: tuple[float, float]) -> ToWheels:
+def _layout_wheels(
+    vehicle: VehicleDescription, scale: tuple[float, float], layout: LayoutWatch | None
+) -> ToWheels:
     """Return what makes a wheel twist of all wheels that the vehicle names."""
     read, last = JointReadings(vehicle), dict[str, float]()
 
@@ -149,6 +156,8 @@ def _layout_wheels(vehicle: VehicleDescription, scale: tuple[float, float]) -> T
         found = twists_of_wheels(vehicle, read.names, rows, np.array([last.get("t", t), t]))
         if all(map(math.isfinite, values.values())):
             last.update({**values, "t": t})
+            if layout is not None:
+                layout.take(values, t)
         v, vy, omega = float(found.v[1]), float(found.vy[1]), float(found.omega[1])
         if not math.isfinite(v + vy + omega):
             return None

@@ -36,6 +36,8 @@ from slipwise.live.transport import OnSample, Transport
 from slipwise.live.typed_messages import COMMANDS, asked_of
 from slipwise.live.wires.ros_types import OWN_PACKAGE, ros_types
 from slipwise.live.wires.wire import OnMessage, RosWire
+from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.wheel_layout import LayoutWatch
 from slipwise.logs.messages import NAV_SAT_FIX
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import Topic
@@ -92,6 +94,7 @@ class RosTransport(Transport):
         self._seen, self._simulated = seen, simulated
         self._messages, self._listeners = RosMessages(name), Listeners(wire.connections)
         self._reading = ros_types()
+        self._layout = None if options.wheels is None else LayoutWatch(options.wheels)
         self._notices: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._stamps = Stamps("" if roles.pose is None else roles.pose.name, self._notices.put)
         self._calls: queue.SimpleQueue[AppliedParameters | None] = queue.SimpleQueue()
@@ -99,6 +102,10 @@ class RosTransport(Transport):
         self._unknown: set[str] = set()  # topics whose types this ROS does not have
         self._closed = False
         self._said, self._said_at = ("", ""), -DIAGNOSTICS_EVERY
+
+    def found(self) -> tuple[Finding, ...]:
+        """Return what the readings of described wheels show to be wrong."""
+        return () if self._layout is None else self._layout.found()
 
     def subscribe(self, on_sample: OnSample) -> None:
         """Subscribe to the topics of the roles, and announce what is published.
@@ -224,7 +231,7 @@ class RosTransport(Transport):
             case "command":
                 return to_command(kind, options)
             case "wheel":
-                return to_wheels(kind, options, self._notices.put, topic.name)
+                return to_wheels(kind, options, self._notices.put, topic.name, self._layout)
             case "pose":
                 if kind == NAV_SAT_FIX:
                     return FixPoses(options, imu).take

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from slipwise.live.outputs import Output
 from slipwise.live.samples import Sample
+from slipwise.logs.findings.finding import Finding
 
 OnSample = Callable[[Sample], None]
 
@@ -27,6 +28,10 @@ class Transport(Protocol):
 
     def publish(self, output: Output) -> None:
         """Hand a result to whoever listens; never waits for them."""
+
+    def found(self) -> tuple[Finding, ...]:
+        """Return what it saw to be wrong in what came so far."""
+        return ()
 
     def notices(self) -> list[str]:
         """Return what is to be said since the last call, such as a topic on which nothing comes."""

@@ -19,6 +19,7 @@ from slipwise.live.outputs import Output
 from slipwise.live.pipe import samples_in
 from slipwise.live.samples import Sample, Unusable
 from slipwise.live.transport import OnSample, Transport
+from slipwise.logs.findings.finding import Finding
 from slipwise.logs.options import LogOptions
 
 DEFAULT_ADDRESS = "127.0.0.1:7447"
@@ -107,6 +108,10 @@ class Udp(Transport):
             return
         with contextlib.suppress(OSError):  # no receiver
             self._socket.sendto(line.encode() + b"\n", self._sender)
+
+    def found(self) -> tuple[Finding, ...]:
+        """Return what the lines so far show to be wrong."""
+        return self._reader.found()
 
     def notices(self) -> list[str]:
         """Return what was worked out of lines; what is wrong with packets is among the samples."""

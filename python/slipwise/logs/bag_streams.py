@@ -9,8 +9,9 @@ import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.attitude import was_measured
-from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.finding import Notes
 from slipwise.logs.findings.topics import NoRotation, ZeroCovariance, ZeroTwist
+from slipwise.logs.findings.wheel_layout import layout_findings
 from slipwise.logs.fixes import status_codes
 from slipwise.logs.header_clock import BagClocks
 from slipwise.logs.joints import speeds_from_angles
@@ -36,7 +37,7 @@ class BagContext:
     file: str
     options: LogOptions
     tally: Tally
-    notes: list[str | Finding]  # what was worked out, and what was found to be wrong
+    notes: Notes  # what was worked out, and what was found to be wrong
     clocks: BagClocks = _NO_CLOCKS  # how headers and receipt go together
 
     def seconds(self, samples: Samples, role: str) -> Floats:
@@ -129,8 +130,10 @@ def _odometry_twists(context: BagContext, samples: Samples) -> Floats:
 def _layout_stream(context: BagContext, samples: Samples, vehicle: VehicleDescription) -> RawStream:
     names, samples = JointReadings(vehicle).names, _of_wheels(context, samples)
     readings = dict(zip(names.all, samples.values.T, strict=True))
-    found = twists_of_wheels(vehicle, names, readings, context.seconds(samples, "wheels"))
+    t = context.seconds(samples, "wheels")
+    found = twists_of_wheels(vehicle, names, readings, t)
     context.notes.append(f"{samples.topic}: {found.note(str(context.options.vehicle))}")
+    context.notes.extend(layout_findings(vehicle, names, readings, t))
     return context.stream("wheels", samples, {"v": found.v, "vy": found.vy, "omega": found.omega})
 
 

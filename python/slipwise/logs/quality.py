@@ -15,6 +15,7 @@ from slipwise.logs.findings.finding import Finding, RefusedLogError
 from slipwise.logs.findings.plausibility import Implausible, UnreachablePoses, agreement
 from slipwise.logs.findings.readings import NotInSeconds
 from slipwise.logs.findings.seen import OTHER, WORDS
+from slipwise.logs.findings.wheel_layout import OF_LAYOUTS
 from slipwise.logs.findings.wheel_twists import DeadWheel
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally, samples_left_out
@@ -45,7 +46,7 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
     agreed = {name: agreement(motion_windows(rows, name)) for name in ("command", "wheel")}
     for name, own in agreed.items():
         odd = Implausible.of(own, WORDS[name], agreed[OTHER[name]])
-        cause = _cause(log, rows) if odd is not None and name == "wheel" else None
+        cause = None if odd is None else _cause(log, rows, name)
         _refuse(cause or odd, where)
     runs, found = _smoothed(log, unknown_after)
     if _heads_along_course(runs, unknown_after):
@@ -71,8 +72,11 @@ def _heads_along_course(runs: tuple[Run, ...], unknown_after: float) -> bool:
     return is_course(motion_windows(evidence_of(runs, unknown_after).windows, name))
 
 
-def _cause(log: Log, rows: Floats) -> Finding | None:
+def _cause(log: Log, rows: Floats, name: str) -> Finding | None:
     """Find what is wrong with encoders, which makes units and columns of the wheels look wrong."""
+    layout = next((each for each in log.found if each.kind in OF_LAYOUTS), None)
+    if layout is not None or name != "wheel":
+        return layout
     return DeadWheel.of(motion_windows(rows, "wheel")) or WheelSpikes.kept(log)
 
 

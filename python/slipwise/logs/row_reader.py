@@ -14,6 +14,8 @@ from slipwise.errors import LogError
 from slipwise.logs.car_commands import beyond_words
 from slipwise.logs.column_names import check_columns, place_of
 from slipwise.logs.corrections import late_by, turned_one
+from slipwise.logs.findings.finding import Finding, Notes
+from slipwise.logs.findings.wheel_layout import LayoutWatch
 from slipwise.logs.fixes import FIXES, NO_FIX, fix_number
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, Floats
@@ -58,6 +60,7 @@ class RowReader:
         refuse_unheeded(options, LINES)
         self._options, self._late = options, late_by(options)
         self._described = frozenset() if options.wheels is None else options.wheels.names
+        self._layout = None if options.wheels is None else LayoutWatch(options.wheels)
         self._further = frozenset(further)
         self._kinds: dict[tuple[str, ...], dict[str, str]] = {}  # measurement of each column, by all of them
         self._said: set[str] = set()
@@ -70,6 +73,10 @@ class RowReader:
         self._wheels: dict[str, float] = {}  # the last whole readings of wheels, with their t
         self._held: dict[str, tuple[object, ...]] = {}  # the last pose of each source
         self._force = (0.0, 0.0)
+
+    def found(self) -> tuple[Finding, ...]:
+        """Return what the rows so far show to be wrong."""
+        return () if self._layout is None else self._layout.found()
 
     def renamed(self, names: Sequence[str]) -> list[str]:
         """Return columns under their names of a tidy log."""
@@ -94,7 +101,7 @@ class RowReader:
         row = Row(label=text_of(cells, "terrain"), run=run)
         row.left_out.extend(self._unknown(kinds))
         view = _View(names, cells, self._wheels)
-        notes: list[str] = []
+        notes: Notes = []
         for of, read in self._parts():
             if of not in kinds.values():
                 continue
@@ -104,13 +111,13 @@ class RowReader:
                 row.left_out.append((f"{of}s that cannot be used", str(problem)))
         for entry in view.tally.result():
             row.left_out.append((entry.reason, entry.reason))
-        for note in notes:
+        for note in map(str, notes):
             if note not in self._said:
                 self._said.add(note)
                 row.notes.append(note)
         return row
 
-    def _parts(self) -> tuple[tuple[str, Callable[[_View, list[str]], Iterator[Measurement]]], ...]:
+    def _parts(self) -> tuple[tuple[str, Callable[[_View, Notes], Iterator[Measurement]]], ...]:
         return (
             ("command", self._read_command),
             ("wheel", self._read_wheels),
@@ -136,7 +143,7 @@ class RowReader:
             self._said.add(name)
             yield UNKNOWN, f"column {name[:40]!r} is none of a tidy log and is not used"
 
-    def _read_command(self, view: _View, notes: list[str]) -> Iterator[Measurement]:
+    def _read_command(self, view: _View, notes: Notes) -> Iterator[Measurement]:
         found = command_columns(view, self._options, view.tally, notes)
         twist = self._twist(view, "commands", found, self._options.command_scale)
         if twist is not None:
@@ -147,23 +154,25 @@ class RowReader:
             ended = found is not None and found.ended is not None and bool(found.ended[_NOW] == 1.0)
             yield Command(view.t, v, omega, vy, ended)
 
-    def _read_wheels(self, view: _View, notes: list[str]) -> Iterator[Measurement]:
+    def _read_wheels(self, view: _View, notes: Notes) -> Iterator[Measurement]:
         found = wheel_columns(view, self._options, view.tally, notes)
         twist = self._twist(view, "wheels", found, self._options.wheel_scale)
         if twist is not None:
             v, vy, omega = twist
             mine = (name for name in view.now if measured_by(name, self._described) == "wheel")
             self._wheels = {**{name: view.now[name] for name in mine}, "t": view.t}
+            if self._layout is not None:
+                self._layout.take(self._wheels, view.t)
             yield Wheels(view.t, v, omega, vy)
 
-    def _read_force(self, view: _View, _notes: list[str]) -> Iterator[Measurement]:
+    def _read_force(self, view: _View, _notes: Notes) -> Iterator[Measurement]:
         said = [view.now_of(name) for name in FORCE]
         if any(map(math.isfinite, said)):
             x, y = (new if math.isfinite(new) else old for new, old in zip(said, self._force, strict=True))
             self._force = (x, y)
             yield KnownForce(view.t, x, y)
 
-    def _read_pose(self, view: _View, notes: list[str]) -> Iterator[Measurement]:
+    def _read_pose(self, view: _View, notes: Notes) -> Iterator[Measurement]:
         columns = pose_columns(view, self._options, view.tally, notes)
         pose = {name: float(values[_NOW]) for name, values in columns.items()}
         if not {"x", "y"} <= set(pose):
@@ -283,8 +292,8 @@ class _View:
         self.tally.add(reason, reason, count=1, where=_WHERE)
 
 
-def _reader_of(column: str) -> Callable[[_View, list[str]], Iterator[Measurement]]:
-    def read(view: _View, _notes: list[str]) -> Iterator[Measurement]:
+def _reader_of(column: str) -> Callable[[_View, Notes], Iterator[Measurement]]:
+    def read(view: _View, _notes: Notes) -> Iterator[Measurement]:
         value = view.now_of(column)
         if math.isfinite(value):
             yield Reading(view.t, column, value)

@@ -16,7 +16,7 @@ from slipwise.errors import LogError
 from slipwise.logs.clock_steps import TOGETHER, Arrivals, clock_steps
 from slipwise.logs.column_names import check_columns
 from slipwise.logs.findings.clocks import ClockSetBack
-from slipwise.logs.findings.finding import Finding
+from slipwise.logs.findings.finding import Finding, Notes
 from slipwise.logs.fixes import fix_codes
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import (
@@ -108,7 +108,7 @@ def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
 
 
 def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
-    notes: list[str] = []
+    notes: Notes = []
     found: list[Finding] = []
     require_columns(
         table, poses=options.poses is None, described=options.wheels is not None, car=options.car is not None
@@ -122,11 +122,12 @@ def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
         for part, own in _split_by_clock(name, index, rows, found)
     )
     source = Source(str(table.path), table.sha256, table.format, len(table))
-    log = Log(runs, (source,), tally.result(), tuple(notes), missing_input(table, rows.wheels))
-    return log.with_found(*found)
+    said = tuple(note for note in notes if isinstance(note, str))
+    log = Log(runs, (source,), tally.result(), said, missing_input(table, rows.wheels))
+    return log.with_found(*found, *(note for note in notes if isinstance(note, Finding)))
 
 
-def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> _Rows:
+def _rows(table: Table, options: LogOptions, tally: Tally, notes: Notes) -> _Rows:
     names = table.names
     pose = pose_columns(table, options, tally, notes)
     if pose and "fix" in names:
@@ -149,7 +150,7 @@ def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> 
     )
 
 
-def pose_columns(table: Columns, options: LogOptions, tally: Tally, notes: list[str]) -> dict[str, Floats]:
+def pose_columns(table: Columns, options: LogOptions, tally: Tally, notes: Notes) -> dict[str, Floats]:
     """Return the numbers of poses by column; none where they come from another file."""
     if options.poses is not None:
         return {}
@@ -164,7 +165,7 @@ def pose_columns(table: Columns, options: LogOptions, tally: Tally, notes: list[
     return pose
 
 
-def _sources(table: Table, notes: list[str]) -> tuple[Ints, tuple[str, ...]] | None:
+def _sources(table: Table, notes: Notes) -> tuple[Ints, tuple[str, ...]] | None:
     """Return whose pose is in each row; the first source is the one that comes first in the table."""
     codes, names = _source_codes(table)
     named = np.array([bool(name) for name in names])[codes]
@@ -193,7 +194,7 @@ def _source_name(written: str) -> str:
     return name.removesuffix(".0") if name.removesuffix(".0").isdigit() else name
 
 
-def _extra(table: Table, notes: list[str]) -> dict[str, NDArray[Any]]:
+def _extra(table: Table, notes: Notes) -> dict[str, NDArray[Any]]:
     """Return the columns that are carried along; notes those that cannot be read."""
     found = {}
     for name in table.names:
@@ -206,7 +207,7 @@ def _extra(table: Table, notes: list[str]) -> dict[str, NDArray[Any]]:
     return found
 
 
-def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]) -> Bools:
+def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: Notes) -> Bools:
     """Return the rows in which a pose was measured rather than held."""
     there = np.isfinite(pose["x"]) | np.isfinite(pose["y"])
     if "yaw" in pose:

@@ -11,6 +11,8 @@ import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.column_names import listed
+from slipwise.logs.findings.finding import Notes
+from slipwise.logs.findings.wheel_layout import layout_findings
 from slipwise.logs.kinematics import omega_from_curvature, twist_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
@@ -97,9 +99,7 @@ def require_columns(table: Columns, *, poses: bool, described: bool = False, car
         )
 
 
-def command_columns(
-    table: Columns, options: LogOptions, tally: Tally, notes: list[str]
-) -> InputColumns | None:
+def command_columns(table: Columns, options: LogOptions, tally: Tally, notes: Notes) -> InputColumns | None:
     """Return the commanded twist per row, or None where the table has no command."""
     found = _commanded(table, options, tally, notes)
     if found is None or "cmd_ended" not in table.names:
@@ -107,7 +107,7 @@ def command_columns(
     return replace(found, ended=table.numbers("cmd_ended", tally))
 
 
-def _commanded(table: Columns, options: LogOptions, tally: Tally, notes: list[str]) -> InputColumns | None:
+def _commanded(table: Columns, options: LogOptions, tally: Tally, notes: Notes) -> InputColumns | None:
     """Return the commanded twist per row, or None where the table has no command.
 
     `cmd_vy` is the sideways partner of `cmd_vx`. Where a table also has a `cmd_v` that differs from `cmd_vx`,
@@ -166,7 +166,7 @@ def commanded_by_direction(table: Columns, options: LogOptions) -> bool:
     return options.sideways and {"cmd_v", "cmd_dir"} <= set(table.names)
 
 
-def wheel_columns(table: Columns, options: LogOptions, tally: Tally, notes: list[str]) -> InputColumns | None:
+def wheel_columns(table: Columns, options: LogOptions, tally: Tally, notes: Notes) -> InputColumns | None:
     """Return the twist measured at the wheels per row, or None where the table has none."""
     names = table.names
     if "odo_v" in names and "odo_omega" in names:
@@ -208,15 +208,17 @@ def wheel_columns(table: Columns, options: LogOptions, tally: Tally, notes: list
 
 
 def _layout_columns(
-    table: Columns, options: LogOptions, vehicle: VehicleDescription, tally: Tally, notes: list[str]
+    table: Columns, options: LogOptions, vehicle: VehicleDescription, tally: Tally, notes: Notes
 ) -> InputColumns:
     try:
         names = wheel_names(vehicle, table.names)
     except LogError as error:
         raise LogError(error.what, where=str(table.path), advice=error.advice) from error
     readings = {name: table.numbers(name, tally) for name in names.all}
-    found = twists_of_wheels(vehicle, names, readings, table.numbers("t", tally))
+    t = table.numbers("t", tally)
+    found = twists_of_wheels(vehicle, names, readings, t)
     notes.append(f"{table.path.name}: {found.note(str(options.vehicle))}")
+    notes += layout_findings(vehicle, names, readings, t)
     return InputColumns(found.v, found.vy, found.omega)
 
 
@@ -258,7 +260,7 @@ def _unused_because(name: str, names: Collection[str], options: LogOptions) -> s
 
 
 def _turning_commands(
-    table: Columns, v: Floats, options: LogOptions, tally: Tally, notes: list[str]
+    table: Columns, v: Floats, options: LogOptions, tally: Tally, notes: Notes
 ) -> tuple[Floats, Floats | None]:
     """Take cmd_omega; where it is empty the curvature (thesis 3.2), and then the steering angle."""
     names, (factor, _) = table.names, options.command_scale
@@ -277,7 +279,7 @@ def _turning_commands(
     return v, omega
 
 
-def _filled(omega: Floats | None, other: Floats, note: str, notes: list[str]) -> Floats:
+def _filled(omega: Floats | None, other: Floats, note: str, notes: Notes) -> Floats:
     """Fill what is empty of `omega`, and note it where something was."""
     filled = other if omega is None else np.where(np.isnan(omega), other, omega)
     if omega is None or bool((np.isnan(omega) & ~np.isnan(filled)).any()):

@@ -29,6 +29,7 @@ class WheelTwists:
     contradiction: (
         float  # root mean square of what readings contradict each other by, in their stated deviations
     )
+    disagreement: float  # the mean of it, of the wheels' speeds
 
     def note(self, vehicle: str) -> str:
         """Say where the twists come from, and how well the wheels agree."""
@@ -118,7 +119,11 @@ def twists_of_wheels(
         result[there] = _twists(layout, speed[there], steering[there], hinge, rates)
     squares, freedom = np.nansum(result[:, 3]), np.nansum(result[:, 4])
     agree = math.sqrt(squares / freedom) if freedom > 0.0 else math.nan
-    return WheelTwists(result[:, 0], result[:, 1], result[:, 2], agree)
+    rolled = speed[there] * [wheel.radius for wheel in vehicle.wheels]
+    away = vehicle.rolling_std * np.sqrt(result[there, 3] / np.maximum(result[there, 4], 1.0))
+    speeds = np.sqrt(np.nanmean(np.square(rolled), axis=1)) if there.any() else np.zeros(0)
+    share = float(np.sum(away) / np.sum(speeds)) if freedom > 0.0 and speeds.any() else math.nan
+    return WheelTwists(result[:, 0], result[:, 1], result[:, 2], agree, share)
 
 
 def _signed(values: Floats, backwards: bool) -> Floats:

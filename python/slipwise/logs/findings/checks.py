@@ -48,6 +48,7 @@ from slipwise.logs.findings.steering import Commanded, NotSteered
 from slipwise.logs.findings.topics import TOPICS, ArmJoints
 from slipwise.logs.findings.towed_poses import TowedPoses
 from slipwise.logs.findings.uneven_wheels import UnevenWheels
+from slipwise.logs.findings.wheel_layout import LAYOUTS
 from slipwise.logs.findings.wheel_twists import DeadWheel, ParentTwist, Unrelated, WheelSize
 from slipwise.logs.gyro import gyro_rows
 from slipwise.logs.held import UNKNOWN_AFTER
@@ -139,9 +140,11 @@ OF_STREAM: tuple[Check, ...] = (
     GyroLate(),
     IdleSource(),
 )
+#: What only readers of numbers see.
+OF_READERS: tuple[Check, ...] = (*READINGS, *LAYOUTS)
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(
-    {c.kind: c for c in (*FIRST, *THEN, *WHOLE, _BESIDE_FIRST, *CLOCKS, *TOPICS, *READINGS)}.values()
+    {c.kind: c for c in (*FIRST, *THEN, *WHOLE, _BESIDE_FIRST, *CLOCKS, *TOPICS, *OF_READERS)}.values()
 )
 
 

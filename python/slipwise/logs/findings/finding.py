@@ -37,6 +37,10 @@ class Finding:
         return self.spoils or self.reserves
 
 
+#: What a reader worked out, and what it found to be wrong.
+Notes = list[str | Finding]
+
+
 class RefusedLogError(LogError):
     """A log that is not read, since what was found in it makes all of it wrong."""
 

@@ -1,0 +1,311 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wheels of a described vehicle that contradict each other: no body could roll as they say."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.errors import SlipwiseError
+from slipwise.logs.findings.finding import Check, Finding
+from slipwise.logs.vehicle_description import VehicleDescription, WheelDescription
+from slipwise.logs.wheel_readings import WheelNames, twists_of_wheels, wheel_names
+
+Floats = NDArray[np.float64]
+_MUCH = 0.15  # of the wheels' speeds: slip, and a steering 0.3 rad askew, stay below
+_LITTLE = 0.08  # the same, as a reservation
+_SOME = 0.05  # the same, where one change of the description explains it
+_EXPLAINS = 0.25  # of the disagreement is left, at most
+_ALIKE = 1.2  # times the least that is left: another change explains it as well
+_ENOUGH = 100  # rows in which the wheels turn
+_MOST = 20_000  # rows that are looked at
+_SLIDES = "wheels that do not steer slide across (slides)"
+_FEW_WHEELS = 2  # of which either could be wrong
+_KEPT = 5_000  # rows that are kept of a live robot
+_STILL = 20.0  # s of turning in which a hinge keeps its angle
+_TURNS = 0.05  # rad/s
+_VARIES = 0.5  # of the yaw rate's spread over the log: a steady circle has one angle
+_DEGREES = math.pi / 180.0
+_FEW_DEGREES = 5.0  # angles that stay below are not in degrees
+
+
+class WheelLayout(Check):
+    """Readings of wheels that go with no motion of a rigid body."""
+
+    kind, family, reserves = "wheel-layout", "encoders", True
+    means = "the wheels of a described vehicle contradict each other"
+    shows = (
+        f"what no motion explains is {_MUCH:.0%} of their speeds, or {_SOME:.0%} where one change of the "
+        f"description explains it; from {_LITTLE:.0%} on it is a reservation"
+    )
+    cure = "the change that is named: `x`, `y`, `reversed`, `steer_reversed`, names of wheels"
+
+
+class StillHinge(Check):
+    """The hinge of an articulated vehicle that never moves though it turns."""
+
+    kind, family = "still-hinge", "encoders"
+    means = "the angle of a hinge stays though the vehicle turns this way and that"
+    shows = f"the same angle for {_STILL:.0f} s of turning"
+    cure = "repair its sensor, or describe the wheels on one side of the hinge alone"
+
+
+LAYOUTS: tuple[Check, ...] = (WheelLayout(), StillHinge())
+OF_LAYOUTS = {check.kind for check in LAYOUTS}
+
+
+class LayoutWatch:
+    """Keeps the last readings of a vehicle's wheels as they come.
+
+    Args:
+        vehicle: a vehicle with wheels.
+    """
+
+    def __init__(self, vehicle: VehicleDescription) -> None:
+        self._vehicle = vehicle
+        self._names: WheelNames | None = None
+        self._rows: deque[tuple[float, ...]] = deque(maxlen=_KEPT)
+
+    def take(self, readings: Mapping[str, float], t: float) -> None:
+        """Take whole readings by name, rad/s and rad, of a stamp [s]."""
+        self._names = self._names or wheel_names(self._vehicle, readings)
+        self._rows.append((t, *(readings[name] for name in self._names.all)))
+
+    def found(self) -> tuple[Finding, ...]:
+        """Return what they show."""
+        if self._names is None:
+            return ()
+        t, *values = np.array(self._rows).T
+        return layout_findings(self._vehicle, self._names, dict(zip(self._names.all, values, strict=True)), t)
+
+
+@dataclass(frozen=True)
+class _Read:
+    """A description with readings [N] by name."""
+
+    vehicle: VehicleDescription
+    names: WheelNames
+    readings: Mapping[str, Floats]
+    t: Floats  # [N] s
+
+    def disagreement(self) -> float:
+        """Return what no motion explains, of the wheels' speeds; not a number where nothing would show it."""
+        try:
+            return twists_of_wheels(self.vehicle, self.names, dict(self.readings), self.t).disagreement
+        except SlipwiseError:  # such wheels tell no motion
+            return math.nan
+
+    def with_wheels(self, **changes: Any) -> _Read:
+        """Return it with keys of every wheel that has them changed, by functions of their values."""
+        wheels = [
+            wheel.model_copy(
+                update={
+                    key: change(old)
+                    for key, change in changes.items()
+                    if (old := getattr(wheel, key)) is not None
+                }
+            )
+            for wheel in self.vehicle.wheels
+        ]
+        return self.described(wheels=wheels)
+
+    def with_wheel(self, place: int, **values: Any) -> _Read:
+        """Return it with values of one wheel."""
+        wheels = list(self.vehicle.wheels)
+        wheels[place] = wheels[place].model_copy(update=values)
+        return self.described(wheels=wheels)
+
+    def with_readings(self, names: Sequence[str | None], factor: float) -> _Read:
+        """Return it with some readings times a factor."""
+        scaled = {name: values * factor for name, values in self.readings.items() if name in names}
+        return _Read(self.vehicle, self.names, {**self.readings, **scaled}, self.t)
+
+    def without_speed(self, place: int) -> _Read:
+        """Return it without the speed of one wheel."""
+        speeds = tuple(None if k == place else name for k, name in enumerate(self.names.speeds))
+        return _Read(self.vehicle, replace(self.names, speeds=speeds), self.readings, self.t)
+
+    def exchanged(self, first: int, second: int) -> _Read:
+        """Return it with the readings of two wheels exchanged."""
+        names = WheelNames(
+            _exchanged(self.names.speeds, first, second),
+            _exchanged(self.names.steering, first, second),
+            self.names.hinge,
+        )
+        return _Read(self.vehicle, names, self.readings, self.t)
+
+    def of_wheels(self, places: Sequence[int]) -> _Read:
+        """Return it with these wheels alone."""
+        names = replace(
+            self.names,
+            speeds=tuple(self.names.speeds[k] for k in places),
+            steering=tuple(self.names.steering[k] for k in places),
+        )
+        return replace(self.described(wheels=[self.vehicle.wheels[k] for k in places]), names=names)
+
+    def described(self, **changes: Any) -> _Read:
+        """Return it with other keys of the description."""
+        keys = {key: getattr(self.vehicle, key) for key in VehicleDescription.model_fields}
+        return _Read(VehicleDescription(**{**keys, **changes}), self.names, self.readings, self.t)
+
+
+def _exchanged(names: tuple[str | None, ...], first: int, second: int) -> tuple[str | None, ...]:
+    found = list(names)
+    found[first], found[second] = found[second], found[first]
+    return tuple(found)
+
+
+def layout_findings(
+    vehicle: VehicleDescription, names: WheelNames, readings: Mapping[str, Floats], t: Floats
+) -> tuple[Finding, ...]:
+    """Return what speaks against the description, or the readings, of a vehicle's wheels.
+
+    Args:
+        vehicle: a vehicle with wheels.
+        names: of the readings.
+        readings: by name [N], rad/s of speeds and rad of angles, NaN where there is none.
+        t: stamps [N] s.
+    """
+    if len(t) < _ENOUGH:
+        return ()
+    there = np.isfinite(t)
+    for name in names.all:
+        there &= np.isfinite(readings[name])
+    rows = np.flatnonzero(there)[-_MOST:]
+    read = _Read(vehicle, names, {name: readings[name][rows] for name in names.all}, t[rows])
+    turning = np.zeros(len(rows), np.bool_)
+    for speed in names.speeds:
+        turning |= False if speed is None else read.readings[speed] != 0.0
+    if turning.sum() < _ENOUGH:
+        return ()
+    found = (_still_hinge(read), _contradiction(read))
+    return tuple(each for each in found if each is not None)[:1]  # the second would follow from the first
+
+
+def _contradiction(read: _Read) -> Finding | None:
+    share = read.disagreement()
+    if not share > _SOME:
+        return None
+    least, likely = _explained(read, share)
+    if not likely and not share > _LITTLE:
+        return None
+    return WheelLayout.found(
+        f"the wheels contradict each other by {share:.0%} of their speeds: no body rolls like that",
+        f"They agree to {least:.1%} where {', or where '.join(likely)}: correct that."
+        if likely
+        else "Compare the description with the robot: names, x and y, reversed, steer_reversed, units.",
+        evidence=share,
+        spoils=_SLIDES not in likely and (bool(likely) or share > _MUCH),  # the robot itself does that
+    )
+
+
+def _explained(read: _Read, share: float) -> tuple[float, list[str]]:
+    """Return what is left of the disagreement by the mistakes that explain it best, and these in words."""
+    for enough, changes in ((_SOME, _of_all), (_LITTLE, _of_some), (_MUCH, _left_out)):
+        tried = changes(read) if share > enough else ()
+        left = {what: changed.disagreement() for what, changed in tried}
+        least = min((rest for rest in left.values() if math.isfinite(rest)), default=math.inf)
+        if least < _EXPLAINS * share:
+            return least, [what for what, rest in left.items() if rest <= _ALIKE * least][:4]
+    return share, []
+
+
+def _of_all(read: _Read) -> Iterator[tuple[str, _Read]]:
+    """Yield mistakes with the whole description, and what the readings would be without them."""
+    names, wheels = read.names, read.vehicle.wheels
+    steering = [name for name in names.steering if name is not None]
+    yield "left and right are exchanged (the signs of y)", read.with_wheels(y=lambda y: -y)
+    yield "front and rear are exchanged (the signs of x)", read.with_wheels(x=lambda x: -x)
+    if any(wheel.steer is None and wheel.roller is None and not wheel.slides for wheel in wheels):
+        yield _SLIDES, read.described(wheels=[_sliding(wheel) for wheel in wheels])
+    if steering:
+        turned = read.with_wheels(steer_reversed=lambda reverse: not reverse)
+        yield "angles of steering count to the right (steer_reversed)", turned
+        yield from _in_degrees(read, "angles of steering are degrees", steering)
+    if names.hinge is not None and read.vehicle.hinge is not None:
+        hinge = read.vehicle.hinge
+        ahead = hinge.model_copy(update={"x": -hinge.x})
+        yield "the hinge has the other sign of x", read.described(hinge=ahead)
+        yield f"{names.hinge} counts to the right", read.with_readings([names.hinge], -1.0)
+        yield from _in_degrees(read, f"{names.hinge} is in degrees", [names.hinge])
+
+
+def _of_some(read: _Read) -> Iterator[tuple[str, _Read]]:
+    """Yield mistakes with one or two wheels, and what the readings would be without them."""
+    wheels = read.vehicle.wheels
+    for first, second in combinations(range(len(wheels)), 2):
+        if (wheels[first].steer is None) == (wheels[second].steer is None):
+            pair = f"{wheels[first].name} and {wheels[second].name} are exchanged"
+            yield pair, read.exchanged(first, second)
+    for place, wheel in enumerate(wheels):
+        if wheel.driven:
+            backwards = read.with_wheel(place, reversed=not wheel.reversed)
+            yield f"{wheel.name} turns backwards (reversed)", backwards
+        angle = read.names.steering[place]
+        if angle is not None:
+            counted = read.with_wheel(place, steer_reversed=not wheel.steer_reversed)
+            yield f"the steering of {wheel.name} counts to the right (steer_reversed)", counted
+            yield from _in_degrees(read, f"the steering of {wheel.name} is in degrees", [angle])
+
+
+def _left_out(read: _Read) -> Iterator[tuple[str, _Read]]:
+    """Yield what the readings would be without one of three or more speeds, or without all of one wheel."""
+    wheels = read.vehicle.wheels
+    driven = [place for place, name in enumerate(read.names.speeds) if name is not None]
+    for place in driven if len(driven) > _FEW_WHEELS else ():
+        yield f"the speed of {wheels[place].name} is wrong or missing", read.without_speed(place)
+        if wheels[place].steer is not None:
+            others = [k for k in range(len(wheels)) if k != place]
+            yield f"nothing that {wheels[place].name} says is read", read.of_wheels(others)
+
+
+def _sliding(wheel: WheelDescription) -> WheelDescription:
+    slides = wheel.slides or (wheel.steer is None and wheel.roller is None)
+    return wheel.model_copy(update={"slides": slides})
+
+
+def _in_degrees(read: _Read, what: str, names: Sequence[str]) -> Iterator[tuple[str, _Read]]:
+    if max(float(np.max(np.abs(read.readings[name]))) for name in names) > _FEW_DEGREES:
+        yield what, read.with_readings(names, _DEGREES)
+
+
+def _still_hinge(read: _Read) -> Finding | None:
+    name = read.names.hinge
+    if name is None:
+        return None
+    omega = _turns_ahead(read)
+    turns = np.isfinite(omega) & (np.abs(omega) > _TURNS)
+    if not turns.any():
+        return None
+    angle, spread = read.readings[name], float(np.std(omega[turns]))
+    moved = np.flatnonzero(np.diff(angle) != 0.0) + 1
+    steps = np.clip(np.diff(read.t, append=read.t[-1:]), 0.0, 1.0)
+    for rows in np.split(np.arange(len(angle)), moved):
+        mine = rows[turns[rows]]
+        seconds = float(np.sum(steps[mine]))
+        if seconds >= _STILL and float(np.std(omega[mine])) > _VARIES * spread:
+            return StillHinge.found(
+                f"{name} stays at {angle[rows[0]]:.3g} rad for {seconds:.0f} s in which the vehicle turns "
+                "this way and that",
+                "Repair the sensor of the hinge, or describe the wheels on one side of it alone.",
+                evidence=seconds,
+            )
+    return None
+
+
+def _turns_ahead(read: _Read) -> Floats:
+    """Return the yaw rate [N] that the wheels before the hinge alone tell; not a number where they do not."""
+    ahead = [k for k, wheel in enumerate(read.vehicle.wheels) if not wheel.behind_hinge]
+    try:
+        alone = read.of_wheels(ahead).described(hinge=None)
+        names = replace(alone.names, hinge=None)
+        return twists_of_wheels(alone.vehicle, names, dict(read.readings), read.t).omega
+    except SlipwiseError:
+        return np.full(len(read.t), math.nan)
