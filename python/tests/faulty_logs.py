@@ -16,8 +16,7 @@ from slipwise.logs.log import Floats
 from slipwise.logs.quality import checked
 
 Change = Callable[[Run], Run]
-HOLD, WATCHDOG = 1.3, 0.5  # s between commands, and until the robot stops
-OPERATOR = 20.0  # s for which somebody else drives
+HOLD, WATCHDOG, OPERATOR = 1.3, 0.5, 20.0  # s between commands, until the robot stops, of an override
 RADIUS, SEPARATION = 0.1, 0.5  # m, of wheels for faults of one wheel
 
 
@@ -322,10 +321,10 @@ def of_poses(change: Callable[[Poses], Poses], *kinds: str, unseen: tuple[str, .
     return Fault(poses(change), kinds, unseen=unseen)
 
 
-FORWARD = ("DS3", "MRCLAM6_R1")
 UNEVEN = ("DS3", "asphalt_9_25_12h8s57", "grass_8_8_15h56s39")  # commands are not done as they are
-UNCLEAR = (*UNEVEN, "grass_7_29_14h46s15")
 HALF_LATER = sides(lambda left, right, t: (np.where(t < t.mean(), left, 0.5 * left), right))
+UNCLEAR = (*UNEVEN, "grass_7_29_14h46s15")
+LEFT_BY_SIZE = sides(lambda left, right, t: (np.abs(left), right))
 ONE_SIDED = ("asphalt_9_25_12h8s57", "grass_8_8_15h56s39")  # hardly turn to the other side
 NEVER_STANDS = ("simulated", "DS3", "tile_deflated_tyres")
 NOT_THESE = ("unrelated", "does-not-move", "lost-heading", "implausible")
@@ -346,6 +345,7 @@ FAULTS: dict[str, Fault] = {
     "x and y swapped": of_poses(lambda p: replace(p, x=p.y, y=p.x), "implausible"),
     "left wheel dead": of_wheels(sides(lambda left, right, t: (0.0 * left, right)), "dead-wheel"),
     "right wheel dead": of_wheels(sides(lambda left, right, t: (left, 0.0 * right)), "dead-wheel"),
+    "left counts forwards": of_wheels(LEFT_BY_SIZE, "lost-sign", unseen=("simulated", "DS3", UNEVEN[-1])),
     "a wheel counts half later": of_wheels(HALF_LATER, "uneven-wheels", unseen=("MRCLAM6_R1",)),
     "counter of 16 bits": of_wheels(sides(wrapping(16.4)), "wheel-spikes"),
     "counter of an angle": of_wheels(sides(wrapping(2.0 * np.pi * RADIUS)), "wheel-spikes"),
@@ -361,7 +361,7 @@ FAULTS: dict[str, Fault] = {
     "commands turn by size": of_commands(sizes("omega"), "lost-sign", unseen=UNCLEAR),
     "wheels drive by size": of_wheels(sizes("v"), "lost-sign", unseen=("simulated", "DS3")),
     "no heading": of_poses(lambda p: replace(p, yaw=0.0 * p.yaw), "constant-heading", "lost-heading"),
-    "course for a heading": Fault(by_course, ("course-heading",), unseen=FORWARD),
+    "course for a heading": Fault(by_course, ("course-heading",), unseen=("DS3", "MRCLAM6_R1")),
     "sensor 1 m ahead": of_poses(off_centre, "sensor-off-centre"),
     "poses of the wheels": Fault(integrated, ("repeated-wheels",), ("wheels",)),
     "poses of a filter": Fault(lambda run: filtered(run, 4.0), ("filtered-poses",), ("wheels",), ("DS3",)),

@@ -94,7 +94,8 @@ bool SegmentStream::arrives(Stream stream, double t, std::span<const double> num
   return true;
 }
 
-bool SegmentStream::take_input(Stream stream, const InputSample& sample) {
+/// `given` is the input before anything was made of it, as a car's throttle and steering.
+bool SegmentStream::take_input(Stream stream, const InputSample& sample, const BodyTwist& given) {
   const auto& [v, vy, omega] = sample.twist;
   if (!arrives(stream, sample.t, std::array{v, vy, omega})) {
     return false;
@@ -110,7 +111,8 @@ bool SegmentStream::take_input(Stream stream, const InputSample& sample) {
   InputBuffer& history = stream == Stream::Command ? drive_.commands : drive_.wheels;
   history.push(sample);
   if (&history == &drive_.inputs()) {
-    range_ = {std::min(range_[0], v), std::max(range_[1], v), std::min(range_[2], omega), std::max(range_[3], omega)};
+    range_ = {std::min(range_[0], given.v), std::max(range_[1], given.v), std::min(range_[2], given.omega),
+              std::max(range_[3], given.omega)};
     held_.push(sample);
   }
   return true;
@@ -125,10 +127,10 @@ bool SegmentStream::push(const Measurement& measurement) {
 bool SegmentStream::take(const CommandSample& command) {
   const InputSample& sample = command.sample;
   if (!drive_.car) {
-    return take_input(Stream::Command, sample);
+    return take_input(Stream::Command, sample, sample.twist);
   }
   CarStream& car = *drive_.car;
-  const bool taken = take_input(Stream::Command, {sample.t, car.expected(sample, settings().latency)});
+  const bool taken = take_input(Stream::Command, {sample.t, car.expected(sample, settings().latency)}, sample.twist);
   if (taken) {
     car.push_command(sample, settings().latency);
   }
@@ -136,7 +138,7 @@ bool SegmentStream::take(const CommandSample& command) {
 }
 
 bool SegmentStream::take(const WheelSample& wheels) {
-  const bool taken = take_input(Stream::Wheels, wheels.sample);
+  const bool taken = take_input(Stream::Wheels, wheels.sample, wheels.sample.twist);
   if (taken) {
     wheel_stamps_.push_back(wheels.sample.t);
   }

@@ -17,8 +17,8 @@ from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 
 #: Terms by which slip follows gravity at 1 m/s, the angle they come of and the direction it is in.
 _BY_GRAVITY = {
-    ("lon.gx", "lon.abs(V)*gx"): "ahead (pitch)",
-    ("lat.gy", "lat.abs(V)*gy"): "to its side (roll)",
+    ("lon.gx", "lon.abs(V)*gx"): "ahead (pitch or force_x)",
+    ("lat.gy", "lat.abs(V)*gy"): "to its side (roll or force_y)",
 }
 _LEAST_UPHILL, _SURE_UPHILL = 0.005, 5.0  # m/s per m/s2, and standard deviations of it
 LOOK_ALIKE = 0.9  # correlation from which on two parameters count as confounded parameters
@@ -190,7 +190,7 @@ _DRIVES: tuple[tuple[Callable[[str], bool], str], ...] = (
     ),
     (
         _slopes,
-        "Drive up, down and across a slope, with roll and pitch in the log",
+        "Drive up, down and across a slope, with roll and pitch in the log, or under a known force",
     ),
     (lambda n: _turns(n) and "V" in _terms(n), "Drive arcs of both hands at several speeds"),
     (lambda n: _turns(n) and "V" not in _terms(n), "Turn both ways at several yaw rates, in place too"),

@@ -39,8 +39,8 @@ _CLOCKS = (
     "original bag show how far the clocks are apart."
 )
 _ATTITUDE = (
-    "Change the sign of the angle that is named: nose down is a positive pitch, and left side up a positive "
-    "roll (REP-103)."
+    "Change the sign of what is named: nose down is a positive pitch, left side up a positive roll "
+    "(REP-103), and a force that pushes ahead or to the left is positive."
 )
 LATEST = 1.0  # s from a command to its first effect; no drive takes longer
 HIDDEN = 0.05  # of the motion; where errors hide a larger slip, no robot is said to have none
@@ -183,7 +183,8 @@ def _too_late(known: Identified, facts: LogFacts) -> str:
 
 
 def _uphill(known: Identified) -> str:
-    return f"{_REFUSED} by it the robot creeps uphill, {' and '.join(known.uphill)}." if known.uphill else ""
+    ways = " and ".join(known.uphill)
+    return f"{_REFUSED} by it the robot creeps uphill or against the known force, {ways}." if ways else ""
 
 
 def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:

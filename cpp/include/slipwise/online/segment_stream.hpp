@@ -101,7 +101,7 @@ class SegmentStream {
   /// No segment lies between a pose and what is a position alone.
   bool take(const MeasuredPose& pose);
   bool arrives(Stream stream, double t, std::span<const double> numbers, std::size_t kind = 0);
-  bool take_input(Stream stream, const InputSample& sample);
+  bool take_input(Stream stream, const InputSample& sample, const BodyTwist& given);
   void advance(double until);
   void process_wheels(double until);
   void process_pose(const MeasuredPose& raw);

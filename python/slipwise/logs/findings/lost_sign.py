@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import TYPE_CHECKING
 
@@ -11,10 +12,12 @@ import numpy as np
 from slipwise.logs.findings.driven_windows import MOST_TURN
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.plausibility import correlation
+from slipwise.logs.findings.robust_fit import robust_fit
 
 if TYPE_CHECKING:
     from slipwise.logs.findings.seen import Seen
-    from slipwise.logs.log import Floats
+    from slipwise.logs.log import Bools, Floats
+    from slipwise.logs.motion_windows import MotionWindows
 
 _TURNS, _MOVES = 0.2, 0.1  # rad and m by inputs and poses, in a window that tells which way it goes
 _FEWEST, _PART = 6, 0.1  # of such windows that go the other way; where inputs go both ways,
@@ -23,6 +26,11 @@ _TIMES = 3  # in some turns; a frame that is mirrored from some time on has one,
 _LATE, _SO, _MORE = 3, 0.5, 0.2  # windows by which a robot may be late, and how they correlate then
 _FOLLOWS, _FOLLOWS_SOME = 0.7, 0.3  # correlation of the sizes of both; unrelated ones have none
 _AS_FAR, _MOST = 1.5, 0.6  # times as far at most, and so do most of them
+_SOME, _BACK, _NEVER = 0.02, -0.1, -0.02  # quantile of windows; m by the sides: one goes back, one never does
+_FEWEST_BACK, _PART_BACK = 8, 0.04  # windows in which it must have
+_EXPLAINS, _ROUNDS = 0.7, 3  # of the misfit is left, at most; of sound logs 0.9
+_LEAST_GAIN = 0.2  # of wheels
+_HALVES = np.geomspace(0.05, 2.0, 24)  # m from the middle to a side
 
 
 class LostSign(Check):
@@ -30,7 +38,10 @@ class LostSign(Check):
 
     kind, family = "lost-sign", "signs and units"
     means = "a speed, a yaw rate or the heading lost its sign: an absolute value, an arc cosine, an arc sine"
-    shows = "a tenth of the windows and more go the other way, most of them as far"
+    shows = (
+        "a tenth of the windows and more go the other way, most of them as far; or one side never goes back, "
+        "and wheels go astray as if it did"
+    )
     cure = "record signed speeds; `yaw = atan2(2 (w z + x y), 1 - 2 (y y + z z))`"
 
     def look(self, seen: Seen) -> Finding | None:
@@ -53,7 +64,19 @@ class LostSign(Check):
         part = 0.0 if seen.positions else _other_way(way, w.forward[straight], _MOVES)
         if part and _one_sided(w.forward[straight]):
             return self._of_input(f"the {words.name} drive one way alone", "speed", part)
-        return None
+        return None if seen.positions else self._of_side(seen)
+
+    def _of_side(self, seen: Seen) -> Finding | None:
+        side, part = _side_without_sign(seen.windows_of("wheel"))
+        if not side:
+            return None
+        return self.found(
+            f"the {side} wheels never turn backwards, and in {100.0 * part:.0f} % of the windows the robot "
+            "moves as if they did: their speed lost its sign",
+            f"Look at both channels of the encoder of the {side} side: one alone counts forwards only.",
+            evidence=part,
+            spoils=seen.input_name == "wheel",
+        )
 
     def _of_input(self, what: str, lost: str, part: float) -> Finding:
         return self.found(
@@ -61,6 +84,53 @@ class LostSign(Check):
             f"Record the {lost} with its sign: forwards and to the left is positive.",
             evidence=part,
         )
+
+
+def _side_without_sign(w: MotionWindows) -> tuple[str, float]:
+    """Return the side whose speed has no sign, and in which part of the windows that shows; empty where none.
+
+    How far the sides are apart is not known: of half tracks by which one side never goes back, the one is
+    taken with which the wheels explain the poses best, once that side goes back where poses say so.
+    """
+    used = (np.maximum(np.abs(w.turn), np.abs(w.rotation)) < MOST_TURN) & np.isfinite(w.distance)
+    done = np.stack((w.distance * np.cos(w.course_ahead(0.0)), w.turn))[:, used]
+    given = np.stack((w.forward, w.rotation))[:, used]
+    if given.shape[1] < _FEWEST_BACK:
+        return "", 0.0
+    plain, best = _left_over(given, done), ("", 0.0, _EXPLAINS)
+    for half, sign in itertools.product(_HALVES, (-1.0, 1.0)):
+        mine, other = given[0] + sign * half * given[1], given[0] - sign * half * given[1]
+        if np.quantile(mine, _SOME) < _NEVER or np.quantile(other, _SOME) > _BACK:
+            continue
+        back = _backwards(mine, other, half * sign, done)
+        turned = np.where(back, -mine, mine)
+        left = _left_over(np.stack((turned + other, (turned - other) / (sign * half))) / 2.0, done) / plain
+        part = float(back.mean())
+        if left < best[2] and np.count_nonzero(back) >= _FEWEST_BACK and part > _PART_BACK:
+            best = ("left" if sign < 0.0 else "right", part, left)
+    return best[:2]
+
+
+def _backwards(mine: Floats, other: Floats, arm: float, done: Floats) -> Bools:
+    """Return in which windows a side without its sign went back, of what both sides and poses [2, N] say."""
+    back = np.asarray(done[0] + arm * done[1] < 0.0)
+    for _ in range(_ROUNDS):
+        turned = np.where(back, -mine, mine)
+        gains = _gains(np.stack((turned + other, (turned - other) / arm)) / 2.0, done)
+        back = np.asarray(done[0] / gains[0] + arm * done[1] / gains[1] < 0.0)
+    return np.asarray(back)
+
+
+def _gains(given: Floats, done: Floats) -> Floats:
+    fits = [robust_fit(of[:, None], by)[0] for of, by in zip(given, done, strict=True)]
+    return np.maximum([float(gain[0]) for gain in fits], _LEAST_GAIN)
+
+
+def _left_over(given: Floats, done: Floats) -> float:
+    """Return the mean misfit of ways and turns, each of its usual size."""
+    gains = _gains(given, done)
+    size = np.mean(np.abs(done), axis=1, keepdims=True) + _MOVES
+    return float(np.mean(np.abs(done - gains[:, None] * given) / size))
 
 
 def _other_way(done: Floats, given: Floats, least: float) -> float:
