@@ -98,7 +98,8 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     rules = rules_for(start)
     gates = Gates(rules, input_name=input_name)
     intake = Intake(learner, gates, said, input_name=input_name, command_timeout=command_timeout)
-    learning.of_stream = lambda: (*intake.contradictions(), *transport.found())
+    of_wheels = transport.found if input_name == "wheel" else tuple
+    learning.of_stream = lambda: (*intake.contradictions(), *of_wheels())
     if run is not None:
         intake.start_drive(run, DriveStart(table.surface or "", today()))
     applying = table.apply.mode != "off"

@@ -30,7 +30,7 @@ class Transport(Protocol):
         """Hand a result to whoever listens; never waits for them."""
 
     def found(self) -> tuple[Finding, ...]:
-        """Return what it saw to be wrong in what came so far."""
+        """Return what it saw to be wrong in wheels that came so far."""
         return ()
 
     def notices(self) -> list[str]:

@@ -17,6 +17,7 @@ from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.vocabulary import PREFIXES
 
 _NOT_READ = math.nan
+_FEW = 2  # rows, of a live robot, that say nothing of how wheels agree
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +119,7 @@ def twists_of_wheels(
         rates = rate[there] if layout.pivoted else rate[:0]
         result[there] = _twists(layout, speed[there], steering[there], hinge, rates)
     squares, freedom = np.nansum(result[:, 3]), np.nansum(result[:, 4])
-    agree = math.sqrt(squares / freedom) if freedom > 0.0 else math.nan
+    agree = math.sqrt(squares / freedom) if freedom > 0.0 and there.sum() > _FEW else math.nan
     rolled = speed[there] * [wheel.radius for wheel in vehicle.wheels]
     away = vehicle.rolling_std * np.sqrt(result[there, 3] / np.maximum(result[there, 4], 1.0))
     speeds = np.sqrt(np.nanmean(np.square(rolled), axis=1)) if there.any() else np.zeros(0)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from slipwise.calibration.calibrate import calibrate
 from slipwise.live.lines import LineReader
 from slipwise.logs import LogOptions, open_log
 from slipwise.logs.findings.finding import Finding, RefusedLogError
@@ -152,10 +153,12 @@ def table(folder: Path, readings: dict[str, Floats]) -> tuple[Path, LogOptions]:
     return path, LogOptions(vehicle=str(vehicle))
 
 
-def test_a_table_and_its_lines_say_the_same(tmp_path: Path) -> None:
+def test_a_table_its_lines_and_the_verdict_say_the_same(tmp_path: Path) -> None:
     readings = swerve_readings()
     path, options = table(tmp_path, readings | {"wheel_fl": 0.0 * T})
-    (found,) = (each for each in open_log(path, options=options).found if each.kind == "wheel-layout")
+    log = open_log(path, options=options)
+    (found,) = (each for each in log.found if each.kind == "wheel-layout")
+    assert found.sentence in calibrate(log).verdict.sentence
     reader = LineReader(options)
     for line in path.read_text().splitlines():
         reader.read(line)

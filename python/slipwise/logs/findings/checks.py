@@ -116,6 +116,7 @@ WHOLE: tuple[Check, ...] = (
     GyroScale(),
     GyroLate(),
     TwoSources(),
+    *LAYOUTS,
 )
 #: What a live node looks for in its last minutes; two sources of wheels or poses it watches as they come.
 OF_STREAM: tuple[Check, ...] = (
@@ -140,11 +141,9 @@ OF_STREAM: tuple[Check, ...] = (
     GyroLate(),
     IdleSource(),
 )
-#: What only readers of numbers see.
-OF_READERS: tuple[Check, ...] = (*READINGS, *LAYOUTS)
 #: Each once, also what readers and live nodes find.
 EVERY: tuple[Check, ...] = tuple(
-    {c.kind: c for c in (*FIRST, *THEN, *WHOLE, _BESIDE_FIRST, *CLOCKS, *TOPICS, *OF_READERS)}.values()
+    {c.kind: c for c in (*FIRST, *THEN, *WHOLE, _BESIDE_FIRST, *CLOCKS, *TOPICS, *READINGS)}.values()
 )
 
 

@@ -39,8 +39,8 @@ class LostSign(Check):
     kind, family = "lost-sign", "signs and units"
     means = "a speed, a yaw rate or the heading lost its sign: an absolute value, an arc cosine, an arc sine"
     shows = (
-        "a tenth of the windows and more go the other way, most of them as far; or one side never goes back, "
-        "and wheels go astray as if it did"
+        "a tenth of the windows and more go the other way, most of them as far; or one side never does where "
+        "poses do"
     )
     cure = "record signed speeds; `yaw = atan2(2 (w z + x y), 1 - 2 (y y + z z))`"
 

@@ -33,7 +33,7 @@ class SourceTurns(Check):
     kind, family = "source-turns", "poses"
     means = "two sources of poses turn by different angles: one is odometry, or its heading is scaled"
     shows = "over 5 s the turns of one are 5 % more than those of the other, by 6 deviations"
-    cure = "name the one that is right: `--pose-topic` or `--poses` once, rows of one name in `source`"
+    cure = "name the one that is right, as for `source-scale`"
 
     def beside(self, name: str, runs: Sequence[Run]) -> Finding | None:
         """Compare a further source of some runs with their first."""

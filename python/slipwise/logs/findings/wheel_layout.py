@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,9 @@ from slipwise.logs.vehicle_description import VehicleDescription, WheelDescripti
 from slipwise.logs.wheel_readings import WheelNames, twists_of_wheels, wheel_names
 
 Floats = NDArray[np.float64]
+if TYPE_CHECKING:
+    from slipwise.logs.findings.seen import WholeLog
+
 _MUCH = 0.15  # of the wheels' speeds: slip, and a steering 0.3 rad askew, stay below
 _LITTLE = 0.08  # the same, as a reservation
 _SOME = 0.05  # the same, where one change of the description explains it
@@ -36,25 +39,36 @@ _DEGREES = math.pi / 180.0
 _FEW_DEGREES = 5.0  # angles that stay below are not in degrees
 
 
-class WheelLayout(Check):
+class _OfReader(Check):
+    """Found where readings of wheels are read, and said of what is learned from them."""
+
+    of_input = True
+
+    def look_at(self, whole: WholeLog) -> Finding | None:
+        """Return what the reader of a log found."""
+        found = whole.log.found if whole.input_name == "wheel" else ()
+        return next((each for each in found if each.kind == self.kind), None)
+
+
+class WheelLayout(_OfReader):
     """Readings of wheels that go with no motion of a rigid body."""
 
     kind, family, reserves = "wheel-layout", "encoders", True
     means = "the wheels of a described vehicle contradict each other"
     shows = (
-        f"what no motion explains is {_MUCH:.0%} of their speeds, or {_SOME:.0%} where one change of the "
-        f"description explains it; from {_LITTLE:.0%} on it is a reservation"
+        "no motion explains 15 % of their speeds, or 5 % that one change of the description does; from 8 % "
+        "on it is a reservation"
     )
-    cure = "the change that is named: `x`, `y`, `reversed`, `steer_reversed`, names of wheels"
+    cure = "the change that is named"
 
 
-class StillHinge(Check):
+class StillHinge(_OfReader):
     """The hinge of an articulated vehicle that never moves though it turns."""
 
     kind, family = "still-hinge", "encoders"
     means = "the angle of a hinge stays though the vehicle turns this way and that"
     shows = f"the same angle for {_STILL:.0f} s of turning"
-    cure = "repair its sensor, or describe the wheels on one side of the hinge alone"
+    cure = "its sensor; or describe the wheels on one side of it alone"
 
 
 LAYOUTS: tuple[Check, ...] = (WheelLayout(), StillHinge())
@@ -197,8 +211,8 @@ def _contradiction(read: _Read) -> Finding | None:
     if not likely and not share > _LITTLE:
         return None
     return WheelLayout.found(
-        f"the wheels contradict each other by {share:.0%} of their speeds: no body rolls like that",
-        f"They agree to {least:.1%} where {', or where '.join(likely)}: correct that."
+        f"the wheels contradict each other by {100.0 * share:.0f} % of their speeds: no body rolls like that",
+        f"They agree to {100.0 * least:.1f} % where {', or where '.join(likely)}: correct that."
         if likely
         else "Compare the description with the robot: names, x and y, reversed, steer_reversed, units.",
         evidence=share,
