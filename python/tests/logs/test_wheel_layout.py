@@ -12,7 +12,7 @@ from slipwise.calibration.calibrate import calibrate
 from slipwise.live.lines import LineReader
 from slipwise.logs import LogOptions, open_log
 from slipwise.logs.findings.finding import Finding, RefusedLogError
-from slipwise.logs.findings.wheel_layout import layout_findings
+from slipwise.logs.findings.wheel_layout import LayoutWatch, layout_findings
 from slipwise.logs.log import Floats
 from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.wheel_readings import wheel_names
@@ -171,3 +171,14 @@ def test_poses_that_turn_the_other_way_are_not_said_of_a_layout_that_explains_it
     path, options = table(tmp_path, exchanged(readings, ("fl", "rl"), ("fr", "rr")))
     with pytest.raises(RefusedLogError, match="wheels contradict each other"):
         open_log(path, options=options)
+
+
+def test_a_live_robot_may_leave_readings_out_and_be_asked_at_once() -> None:
+    watch = LayoutWatch(SWERVE)
+    assert watch.found() == ()
+    readings = swerve_readings() | {"wheel_fl": 0.0 * T}
+    for k, t in enumerate(T):
+        watch.take({name: values[k] for name, values in readings.items()}, t)
+        watch.take({"wheel_fl": 1.0}, t)
+    (found,) = watch.found()
+    assert (found,) == found_in(SWERVE, readings)

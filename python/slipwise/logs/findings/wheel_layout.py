@@ -76,7 +76,7 @@ OF_LAYOUTS = {check.kind for check in LAYOUTS}
 
 
 class LayoutWatch:
-    """Keeps the last readings of a vehicle's wheels as they come.
+    """Keeps the last readings of a vehicle's wheels as they come; one thread may take while another asks.
 
     Args:
         vehicle: a vehicle with wheels.
@@ -88,15 +88,16 @@ class LayoutWatch:
         self._rows: deque[tuple[float, ...]] = deque(maxlen=_KEPT)
 
     def take(self, readings: Mapping[str, float], t: float) -> None:
-        """Take whole readings by name, rad/s and rad, of a stamp [s]."""
+        """Take readings by name, rad/s and rad, of a stamp [s]; the first are whole."""
         self._names = self._names or wheel_names(self._vehicle, readings)
-        self._rows.append((t, *(readings[name] for name in self._names.all)))
+        self._rows.append((t, *(readings.get(name, math.nan) for name in self._names.all)))
 
     def found(self) -> tuple[Finding, ...]:
         """Return what they show."""
-        if self._names is None:
+        rows = list(self._rows)  # others may come meanwhile
+        if self._names is None or not rows:
             return ()
-        t, *values = np.array(self._rows).T
+        t, *values = np.array(rows).T
         return layout_findings(self._vehicle, self._names, dict(zip(self._names.all, values, strict=True)), t)
 
 
