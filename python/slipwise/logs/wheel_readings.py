@@ -27,14 +27,20 @@ class WheelTwists:
     v: Floats  # m/s
     vy: Floats  # m/s
     omega: Floats  # rad/s
-    contradiction: (
-        float  # root mean square of what readings contradict each other by, in their stated deviations
-    )
-    disagreement: float  # the mean of it, of the wheels' speeds
+    squares: Floats  # of what readings contradict each other by, in their stated deviations
+    freedom: Floats  # how many of these are free
+
+    @property
+    def contradiction(self) -> float:
+        """The root mean square of what readings contradict each other by; not a number of too few rows."""
+        squares, freedom = float(np.nansum(self.squares)), float(np.nansum(self.freedom))
+        enough = freedom > 0.0 and np.count_nonzero(np.isfinite(self.freedom)) > _FEW
+        return math.sqrt(squares / freedom) if enough else math.nan
 
     def note(self, vehicle: str) -> str:
         """Say where the twists come from, and how well the wheels agree."""
-        said = "" if math.isnan(self.contradiction) else f", which agree to {self.contradiction:.2g} sigma"
+        sigmas = self.contradiction
+        said = "" if math.isnan(sigmas) else f", which agree to {sigmas:.2g} sigma"
         return f"odo from the wheels of {vehicle}{said}"
 
 
@@ -118,13 +124,7 @@ def twists_of_wheels(
     if there.any():
         rates = rate[there] if layout.pivoted else rate[:0]
         result[there] = _twists(layout, speed[there], steering[there], hinge, rates)
-    squares, freedom = np.nansum(result[:, 3]), np.nansum(result[:, 4])
-    agree = math.sqrt(squares / freedom) if freedom > 0.0 and there.sum() > _FEW else math.nan
-    rolled = speed[there] * [wheel.radius for wheel in vehicle.wheels]
-    away = vehicle.rolling_std * np.sqrt(result[there, 3] / np.maximum(result[there, 4], 1.0))
-    speeds = np.sqrt(np.nanmean(np.square(rolled), axis=1)) if there.any() else np.zeros(0)
-    share = float(np.sum(away) / np.sum(speeds)) if freedom > 0.0 and speeds.any() else math.nan
-    return WheelTwists(result[:, 0], result[:, 1], result[:, 2], agree, share)
+    return WheelTwists(*result.T)
 
 
 def _signed(values: Floats, backwards: bool) -> Floats:

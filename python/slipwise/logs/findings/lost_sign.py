@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from typing import TYPE_CHECKING
 
@@ -28,7 +27,7 @@ _FOLLOWS, _FOLLOWS_SOME = 0.7, 0.3  # correlation of the sizes of both; unrelate
 _AS_FAR, _MOST = 1.5, 0.6  # times as far at most, and so do most of them
 _SOME, _BACK, _NEVER = 0.02, -0.1, -0.02  # quantile of windows; m by the sides: one goes back, one never does
 _FEWEST_BACK, _PART_BACK = 8, 0.04  # windows in which it must have
-_EXPLAINS, _ROUNDS = 0.7, 3  # of the misfit is left, at most; of sound logs 0.9
+_EXPLAINS, _ROUNDS = 0.7, 4  # of the misfit is left, at most; of sound logs 0.9
 _LEAST_GAIN = 0.2  # of wheels
 _HALVES = np.geomspace(0.05, 2.0, 24)  # m from the middle to a side
 
@@ -97,28 +96,33 @@ def _side_without_sign(w: MotionWindows) -> tuple[str, float]:
     given = np.stack((w.forward, w.rotation))[:, used]
     if given.shape[1] < _FEWEST_BACK:
         return "", 0.0
-    plain, best = _left_over(given, done), ("", 0.0, _EXPLAINS)
-    for half, sign in itertools.product(_HALVES, (-1.0, 1.0)):
-        mine, other = given[0] + sign * half * given[1], given[0] - sign * half * given[1]
-        if np.quantile(mine, _SOME) < _NEVER or np.quantile(other, _SOME) > _BACK:
-            continue
-        back = _backwards(mine, other, half * sign, done)
-        turned = np.where(back, -mine, mine)
-        left = _left_over(np.stack((turned + other, (turned - other) / (sign * half))) / 2.0, done) / plain
-        part = float(back.mean())
+    arms = [arm for arm in (*-_HALVES, *_HALVES) if _never_goes_back(given, arm)]
+    plain = _left_over(given, done) if arms else 0.0
+    best = ("", 0.0, _EXPLAINS)
+    for arm in arms:
+        back, signed = _with_sign(given, arm, done)
+        left, part = _left_over(signed, done) / plain, float(back.mean())
         if left < best[2] and np.count_nonzero(back) >= _FEWEST_BACK and part > _PART_BACK:
-            best = ("left" if sign < 0.0 else "right", part, left)
+            best = ("left" if arm < 0.0 else "right", part, left)
     return best[:2]
 
 
-def _backwards(mine: Floats, other: Floats, arm: float, done: Floats) -> Bools:
-    """Return in which windows a side without its sign went back, of what both sides and poses [2, N] say."""
-    back = np.asarray(done[0] + arm * done[1] < 0.0)
+def _never_goes_back(given: Floats, arm: float) -> bool:
+    """Say whether the side `arm` [m] to the right of the middle never goes back, and the other one does."""
+    mine, other = given[0] + arm * given[1], given[0] - arm * given[1]
+    return bool(np.quantile(mine, _SOME) >= _NEVER and np.quantile(other, _SOME) <= _BACK)
+
+
+def _with_sign(given: Floats, arm: float, done: Floats) -> tuple[Bools, Floats]:
+    """Return in which windows a side without its sign went back, and ways and turns [2, N] with the sign."""
+    mine, other = given[0] + arm * given[1], given[0] - arm * given[1]
+    gains, signed = np.ones(2), given
     for _ in range(_ROUNDS):
-        turned = np.where(back, -mine, mine)
-        gains = _gains(np.stack((turned + other, (turned - other) / arm)) / 2.0, done)
         back = np.asarray(done[0] / gains[0] + arm * done[1] / gains[1] < 0.0)
-    return np.asarray(back)
+        turned = np.where(back, -mine, mine)
+        signed = np.stack((turned + other, (turned - other) / arm)) / 2.0
+        gains = _gains(signed, done)
+    return back, signed
 
 
 def _gains(given: Floats, done: Floats) -> Floats:

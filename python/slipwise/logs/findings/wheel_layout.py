@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from slipwise.errors import SlipwiseError
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.vehicle_description import VehicleDescription, WheelDescription
-from slipwise.logs.wheel_readings import WheelNames, twists_of_wheels, wheel_names
+from slipwise.logs.wheel_readings import WheelNames, WheelTwists, twists_of_wheels, wheel_names
 
 Floats = NDArray[np.float64]
 if TYPE_CHECKING:
@@ -110,26 +110,32 @@ class _Read:
     readings: Mapping[str, Floats]
     t: Floats  # [N] s
 
+    def twists(self) -> WheelTwists:
+        """Return what the wheels say together.
+
+        Raises:
+            SlipwiseError: they tell no motion.
+        """
+        return twists_of_wheels(self.vehicle, self.names, dict(self.readings), self.t)
+
     def disagreement(self) -> float:
         """Return what no motion explains, of the wheels' speeds; not a number where nothing would show it."""
         try:
-            return twists_of_wheels(self.vehicle, self.names, dict(self.readings), self.t).disagreement
-        except SlipwiseError:  # such wheels tell no motion
+            found = self.twists()
+        except SlipwiseError:
             return math.nan
-
-    def with_wheels(self, **changes: Any) -> _Read:
-        """Return it with keys of every wheel that has them changed, by functions of their values."""
-        wheels = [
-            wheel.model_copy(
-                update={
-                    key: change(old)
-                    for key, change in changes.items()
-                    if (old := getattr(wheel, key)) is not None
-                }
-            )
-            for wheel in self.vehicle.wheels
+        away = self.vehicle.rolling_std * np.sqrt(found.squares / np.maximum(found.freedom, 1.0))
+        rolled = [
+            self.readings[name] * wheel.radius
+            for name, wheel in zip(self.names.speeds, self.vehicle.wheels, strict=True)
+            if name is not None
         ]
-        return self.described(wheels=wheels)
+        speeds = np.sqrt(np.mean(np.square(rolled), axis=0)) if rolled else np.zeros(len(self.t))
+        return float(np.sum(away) / np.sum(speeds)) if found.freedom.any() and speeds.any() else math.nan
+
+    def with_each(self, change: Callable[[WheelDescription], dict[str, Any]]) -> _Read:
+        """Return it with other values of every wheel, by key."""
+        return self.described(wheels=[each.model_copy(update=change(each)) for each in self.vehicle.wheels])
 
     def with_wheel(self, place: int, **values: Any) -> _Read:
         """Return it with values of one wheel."""
@@ -137,44 +143,38 @@ class _Read:
         wheels[place] = wheels[place].model_copy(update=values)
         return self.described(wheels=wheels)
 
-    def with_readings(self, names: Sequence[str | None], factor: float) -> _Read:
+    def with_readings(self, names: Sequence[str], factor: float) -> _Read:
         """Return it with some readings times a factor."""
-        scaled = {name: values * factor for name, values in self.readings.items() if name in names}
-        return _Read(self.vehicle, self.names, {**self.readings, **scaled}, self.t)
+        return replace(
+            self, readings={**self.readings, **{name: self.readings[name] * factor for name in names}}
+        )
 
     def without_speed(self, place: int) -> _Read:
         """Return it without the speed of one wheel."""
         speeds = tuple(None if k == place else name for k, name in enumerate(self.names.speeds))
-        return _Read(self.vehicle, replace(self.names, speeds=speeds), self.readings, self.t)
+        return replace(self, names=replace(self.names, speeds=speeds))
 
     def exchanged(self, first: int, second: int) -> _Read:
         """Return it with the readings of two wheels exchanged."""
-        names = WheelNames(
-            _exchanged(self.names.speeds, first, second),
-            _exchanged(self.names.steering, first, second),
-            self.names.hinge,
-        )
-        return _Read(self.vehicle, names, self.readings, self.t)
+        places = list(range(len(self.vehicle.wheels)))
+        places[first], places[second] = second, first
+        return replace(self, names=self._names_of(places))
 
     def of_wheels(self, places: Sequence[int]) -> _Read:
         """Return it with these wheels alone."""
-        names = replace(
-            self.names,
-            speeds=tuple(self.names.speeds[k] for k in places),
-            steering=tuple(self.names.steering[k] for k in places),
-        )
-        return replace(self.described(wheels=[self.vehicle.wheels[k] for k in places]), names=names)
+        wheels = [self.vehicle.wheels[k] for k in places]
+        return replace(self.described(wheels=wheels), names=self._names_of(places))
 
     def described(self, **changes: Any) -> _Read:
         """Return it with other keys of the description."""
         keys = {key: getattr(self.vehicle, key) for key in VehicleDescription.model_fields}
-        return _Read(VehicleDescription(**{**keys, **changes}), self.names, self.readings, self.t)
+        return replace(self, vehicle=VehicleDescription(**{**keys, **changes}))
 
-
-def _exchanged(names: tuple[str | None, ...], first: int, second: int) -> tuple[str | None, ...]:
-    found = list(names)
-    found[first], found[second] = found[second], found[first]
-    return tuple(found)
+    def _names_of(self, places: Sequence[int]) -> WheelNames:
+        speeds, steering = (
+            tuple(names[k] for k in places) for names in (self.names.speeds, self.names.steering)
+        )
+        return replace(self.names, speeds=speeds, steering=steering)
 
 
 def layout_findings(
@@ -234,14 +234,14 @@ def _explained(read: _Read, share: float) -> tuple[float, list[str]]:
 
 def _of_all(read: _Read) -> Iterator[tuple[str, _Read]]:
     """Yield mistakes with the whole description, and what the readings would be without them."""
-    names, wheels = read.names, read.vehicle.wheels
+    names = read.names
     steering = [name for name in names.steering if name is not None]
-    yield "left and right are exchanged (the signs of y)", read.with_wheels(y=lambda y: -y)
-    yield "front and rear are exchanged (the signs of x)", read.with_wheels(x=lambda x: -x)
-    if any(wheel.steer is None and wheel.roller is None and not wheel.slides for wheel in wheels):
-        yield _SLIDES, read.described(wheels=[_sliding(wheel) for wheel in wheels])
+    yield "left and right are exchanged (the signs of y)", read.with_each(lambda wheel: {"y": -wheel.y})
+    yield "front and rear are exchanged (the signs of x)", read.with_each(lambda wheel: {"x": -wheel.x})
+    if any(map(_rigid, read.vehicle.wheels)):
+        yield _SLIDES, read.with_each(lambda wheel: {"slides": wheel.slides or _rigid(wheel)})
     if steering:
-        turned = read.with_wheels(steer_reversed=lambda reverse: not reverse)
+        turned = read.with_each(lambda wheel: {"steer_reversed": not wheel.steer_reversed})
         yield "angles of steering count to the right (steer_reversed)", turned
         yield from _in_degrees(read, "angles of steering are degrees", steering)
     if names.hinge is not None and read.vehicle.hinge is not None:
@@ -281,9 +281,9 @@ def _left_out(read: _Read) -> Iterator[tuple[str, _Read]]:
             yield f"nothing that {wheels[place].name} says is read", read.of_wheels(others)
 
 
-def _sliding(wheel: WheelDescription) -> WheelDescription:
-    slides = wheel.slides or (wheel.steer is None and wheel.roller is None)
-    return wheel.model_copy(update={"slides": slides})
+def _rigid(wheel: WheelDescription) -> bool:
+    """Say whether a wheel is described as one that neither steers nor rolls nor slides across."""
+    return wheel.steer is None and wheel.roller is None and not wheel.slides
 
 
 def _in_degrees(read: _Read, what: str, names: Sequence[str]) -> Iterator[tuple[str, _Read]]:
@@ -320,7 +320,6 @@ def _turns_ahead(read: _Read) -> Floats:
     ahead = [k for k, wheel in enumerate(read.vehicle.wheels) if not wheel.behind_hinge]
     try:
         alone = read.of_wheels(ahead).described(hinge=None)
-        names = replace(alone.names, hinge=None)
-        return twists_of_wheels(alone.vehicle, names, dict(read.readings), read.t).omega
+        return replace(alone, names=replace(alone.names, hinge=None)).twists().omega
     except SlipwiseError:
         return np.full(len(read.t), math.nan)
