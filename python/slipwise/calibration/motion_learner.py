@@ -21,6 +21,7 @@ from slipwise.calibration.learned_log import found_limits, held_out_predictions,
 from slipwise.calibration.learner_answers import Event, MotionState, Odometry, event_of, odometry_of
 from slipwise.calibration.measurements import Measurements
 from slipwise.calibration.model_content import ModelFacts, model_content
+from slipwise.calibration.mounts import Mount
 from slipwise.calibration.path_ahead import PathAhead
 from slipwise.calibration.prepared_run import used_sources
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
@@ -114,6 +115,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         self._start: Model | None = None  # that it began with
         self._of_log: tuple[Finding, ...] = ()  # what only a whole log shows
         self._of_others: tuple[Finding, ...] = ()  # of further sources of poses in it
+        self._mounts: tuple[Mount, ...] = ()  # of further sources, as a stream shows them
         self._log_known = False
         self._logs: dict[str, str] = {}  # that were pushed, where they are known: paths by their SHA-256
         self.found: tuple[Finding, ...] = ()  # what was wrong at the last judgement of a stream
@@ -245,7 +247,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             positions=self._positions,
         )
         content = self._remembered(model_content(learned, judged, origin), learned)
-        return model_of(content, Log(()), found), judged.judgement
+        return model_of(content, Log(()), found, self._mounts), judged.judgement
 
     def know_log(self, log: Log) -> None:
         """Take what a whole log shows beside the measurements that are pushed from it."""
@@ -257,10 +259,10 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         self._logs |= {source.sha256: source.path for source in used_sources(log, self._input)}
         self.know_clocks(compared=log.clocks_compared)
 
-    def know_stream(self, found: tuple[Finding, ...]) -> None:
+    def know_stream(self, found: tuple[Finding, ...], mounts: tuple[Mount, ...] = ()) -> None:
         """Take what a stream shows beside what the learner keeps; a whole log shows it better."""
         if not self._log_known:
-            self._of_log = found
+            self._of_log, self._mounts = found, mounts
 
     def know_clocks(self, *, compared: bool) -> None:
         """Take whether stamps were compared with the times of arrival: a delay beyond 1 s is then real."""

@@ -79,6 +79,11 @@ class Windows:
         counts = self.sums(taken.astype(np.int64))[chosen]
         return replace(self, t=self.t[taken], pose=self.pose[:, taken], counts=counts)
 
+    def begins(self) -> Floats:
+        """Return the stamps at which windows begin, [W]."""
+        found: Floats = self.t[np.cumsum(self.counts) - self.counts]
+        return found
+
     def seconds(self) -> float:
         """Return how much driving they hold."""
         ends = np.cumsum(self.counts)

@@ -23,6 +23,7 @@ from slipwise.models.parameter_table import ParameterTable
 Floats = NDArray[np.float64]
 
 _FEWEST_WINDOWS = 6
+_MOST_WINDOWS = 120  # of a source, that a stream keeps
 _TELLING = 16.0  # times the prior's information, from which on windows tell something
 _FARTHEST = np.array([50.0, 50.0, np.pi, LATEST])  # m, m, rad, s
 _GRID = np.arange(-LATEST + 0.1, LATEST, 0.2)  # s, where the search for the lateness begins
@@ -99,6 +100,54 @@ def mounts_of(runs: Sequence[Run], place: tuple[float, float, float] = (0.0, 0.0
     return tuple(each for each in found if each is not None)
 
 
+class MountWatch:
+    """Where further sources sit while they are driven: some hundred windows are kept, the older the fewer.
+
+    Args:
+        place: where the first source sits in base_link (x, y [m], yaw [rad]).
+    """
+
+    def __init__(self, place: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
+        self._place = place
+        self._windows: dict[tuple[str, bool], list[Windows]] = {}  # by the name, and whether it has headings
+        self._seconds: dict[tuple[str, bool], float] = {}
+        self._until = -np.inf  # s, when the last stretch ended
+        self._beside = ""
+
+    def restart(self) -> None:
+        """Another recording begins, or the clock was set."""
+        self._until = -np.inf
+
+    def take(self, stretch: Run) -> None:
+        """Take the newest stretch of a run; of what was taken before, nothing is taken again."""
+        if stretch.poses.course or not len(stretch.poses):
+            return
+        self._beside = stretch.source
+        for name, poses in stretch.others.items():
+            found = windows_in(stretch, poses, self._place) if len(poses) else None
+            if found is None:
+                continue
+            new = found.begins() >= self._until
+            if new.any():
+                self._keep((name, not poses.course), found.some(new, len(poses)))
+        self._until = max(self._until, float(stretch.poses.t[-1]) - 2.0 * LATEST)
+
+    def mounts(self) -> tuple[Mount, ...]:
+        """Return the mounts by all that is kept; of those that too few windows show, none."""
+        found = (
+            _mount_by(name, self._beside, windows, self._seconds[name, heading], heading=heading)
+            for (name, heading), windows in self._windows.items()
+        )
+        return tuple(each for each in found if each is not None)
+
+    def _keep(self, which: tuple[str, bool], windows: Windows) -> None:
+        kept = self._windows.setdefault(which, [])
+        kept.append(windows)
+        self._seconds[which] = self._seconds.get(which, 0.0) + windows.seconds()
+        if sum(map(len, kept)) > _MOST_WINDOWS:
+            kept[:] = [each.some(np.arange(len(each)) % 2 == 0, len(each.t)) for each in kept]
+
+
 def holding_mounts(model: Model, mounts: Sequence[Mount]) -> Model:
     """Return the model with what the drive tells of the mounts as rows."""
     table = model.table
@@ -110,15 +159,20 @@ def holding_mounts(model: Model, mounts: Sequence[Mount]) -> Model:
 def _mount(name: str, beside: str, runs: Sequence[Run], place: tuple[float, float, float]) -> Mount | None:
     found = (windows_in(run, run.others[name], place) for run in runs if name in run.others)
     windows = [each for each in found if each is not None]
-    count = sum(map(len, windows))
-    if count < _FEWEST_WINDOWS:
-        return None
     heading = not any(run.others[name].course for run in runs if name in run.others)
+    return _mount_by(name, beside, windows, sum(each.seconds() for each in windows), heading=heading)
+
+
+def _mount_by(
+    name: str, beside: str, windows: Sequence[Windows], seconds: float, *, heading: bool
+) -> Mount | None:
+    if sum(map(len, windows)) < _FEWEST_WINDOWS:
+        return None
     starts = [np.array([0.0, 0.0, 0.0, late]) for late in _GRID]
     few = _few(windows)
     best = min((_rough(few, start, heading=heading) for start in starts), key=lambda each: each[0])[1]
     value, covariance = _fit(windows, best, heading=heading)
-    return Mount(name, beside, value, covariance, sum(each.seconds() for each in windows), heading)
+    return Mount(name, beside, value, covariance, seconds, heading)
 
 
 def _few(windows: Sequence[Windows]) -> list[Windows]:

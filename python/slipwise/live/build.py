@@ -99,6 +99,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     gates = Gates(rules, input_name=input_name)
     intake = Intake(learner, gates, said, input_name=input_name, command_timeout=command_timeout)
     of_wheels = transport.found if input_name == "wheel" else tuple
+    learning.mounts = lambda last: intake.mounts(last=last)
     learning.of_stream = lambda: (*intake.contradictions(), *of_wheels())
     if run is not None:
         intake.start_drive(run, DriveStart(table.surface or "", today()))

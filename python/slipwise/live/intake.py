@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.calibration.mounts import Mount
 from slipwise.calibration.settings_for_log import takes_ground_for_level
 from slipwise.live.clock_watch import ClockWatch, PoseSteps
 from slipwise.live.command_stops import SAID_EVERY, CommandEnds, LiveCommandStops
@@ -57,7 +58,8 @@ class Intake:
         unknown_after = learner.settings.segment.unknown_after
         self._stops = LiveCommandStops(unknown_after, command_timeout) if input_name == "command" else None
         self._pose_steps = PoseSteps()
-        self._recent = RecentLog(input_name, learner.settings.segment.unknown_after)
+        sensor = learner.settings.sensor_extrinsics
+        self._recent = RecentLog(input_name, unknown_after, sensor.pose)
         self._clock = ClockWatch()
         self.surfaces = SurfaceWatch(learner, said)
         self._level = takes_ground_for_level(learner.settings)
@@ -128,6 +130,10 @@ class Intake:
             return (no_seconds,)
         stops = () if self._stops is None else self._stops.found()
         return (*stops, *self._recent.found())
+
+    def mounts(self, *, last: bool) -> tuple[Mount, ...]:
+        """Return where further sources of poses sit, by what came so far; `last`: nothing more comes."""
+        return self._recent.mounts(last=last)
 
     def events(self) -> list[Event]:
         """Return what the learner has to say since the last call; what it rejected is counted."""

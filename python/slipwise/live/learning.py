@@ -9,6 +9,7 @@ from collections.abc import Callable
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.calibration.mounts import Mount
 from slipwise.errors import SlipwiseError
 from slipwise.live.applied import start_value, values_of
 from slipwise.live.outputs import Validity
@@ -21,6 +22,10 @@ OFTEN, SELDOM = 2.0, 5.0  # s between judgements: a long drive has many predicti
 MANY = 100  # segments, from which on judgements are seldom
 AGREE_AGAIN = 80  # stretches of 1.5 s of driving without a contradiction end it: two minutes
 AFTER_CHANGE = 60.0  # s after a change of terrain in which judgements are frequent all the same
+
+
+def _no_mounts(_last: bool, /) -> tuple[Mount, ...]:  # as a callback it has no names
+    return ()
 
 
 class Learning:
@@ -42,6 +47,7 @@ class Learning:
         self.nis: float | None = None
         self.segments = 0
         self.of_stream: Callable[[], tuple[Finding, ...]] = tuple  # what the learner does not keep
+        self.mounts: Callable[[bool], tuple[Mount, ...]] = _no_mounts  # the same; whether nothing more comes
         self._said = said
         self._new = False  # whether something was learned since the last judgement
         self._compared = learner.compared  # how much of the driving was looked at for contradictions by then
@@ -82,7 +88,7 @@ class Learning:
             return False
         self._new, self._judged, self._compared = False, t, compared
         before = self.validity.whole
-        self.learner.know_stream(self.of_stream())
+        self.learner.know_stream(self.of_stream(), self.mounts(last))
         try:
             self.model, self.judgement = self.learner.judged_model(limits=False)
         except SlipwiseError as problem:

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from slipwise.calibration.mounts import Mount, MountWatch
 from slipwise.live.samples import Command, Pose, Reading, Stamped, Wheels
 from slipwise.logs.findings.checks import OF_STREAM, findings_of_others, looked_at
 from slipwise.logs.findings.finding import Finding
@@ -32,9 +33,12 @@ class RecentLog:
     Args:
         input_name: "command" or "wheel", the input that is learned from.
         unknown_after: an input is unknown once it is older than this [s].
+        place: where the first source of poses sits in base_link (x, y [m], yaw [rad]).
     """
 
-    def __init__(self, input_name: str, unknown_after: float) -> None:
+    def __init__(
+        self, input_name: str, unknown_after: float, place: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> None:
         self._input, self._unknown_after = input_name, unknown_after
         self._rows: dict[type | str, deque[_Row]] = {}  # by the kind; of further sources, by the name
         self._first = ""  # name of the first source
@@ -42,6 +46,8 @@ class RecentLog:
         self._back: deque[tuple[float, str]] = deque(maxlen=MOST)  # stamps of what went back, with its name
         self._newest, self._looked_at = -math.inf, math.nan
         self._found: dict[str, Finding] = {}
+        self._placing, self._placed_at = MountWatch(place), math.nan
+        self._mounts: tuple[Mount, ...] = ()
 
     def take(self, sample: Stamped, *, further: bool = False) -> None:
         """Take a sample; one that is not later than those of its kind says nothing.
@@ -83,7 +89,8 @@ class RecentLog:
         """Another recording begins, or the clock was set."""
         self._rows.clear()
         self._back.clear()
-        self._newest, self._looked_at = -math.inf, math.nan
+        self._placing.restart()
+        self._newest, self._looked_at, self._placed_at = -math.inf, math.nan, math.nan
 
     def found(self) -> tuple[Finding, ...]:
         """Return what was found so far; the last minutes are looked at now and then."""
@@ -97,6 +104,18 @@ class RecentLog:
             for each in findings_of_others(whole.log, self._input, self._unknown_after, ()):
                 self._found.setdefault(f"{each.kind} of others", each)
         return tuple(self._found.values())
+
+    def mounts(self, *, last: bool = False) -> tuple[Mount, ...]:
+        """Return where further sources sit; it is looked at again now and then, and at last."""
+        if math.isnan(self._placed_at):
+            self._placed_at = self._newest
+        several = any(isinstance(kind, str) for kind in self._rows)
+        if several and (last or self._newest >= self._placed_at + LOOKED_EVERY):
+            self._placed_at = self._newest
+            (run,) = self._log().runs
+            self._placing.take(run)
+            self._mounts = self._placing.mounts()
+        return self._mounts
 
     def _log(self) -> Log:
         commands, wheels = (self._inputs(kind) for kind in (Command, Wheels))

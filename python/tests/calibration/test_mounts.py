@@ -17,7 +17,7 @@ from sample_sources import Source, run_of, seen_by, true_run
 from slipwise.calibration import Calibration, calibrate
 from slipwise.calibration.calibrate_sequence import calibrate_sequence
 from slipwise.calibration.mount_windows import LATE, YAW, X, Y
-from slipwise.calibration.mounts import holding_mounts, mounts_of
+from slipwise.calibration.mounts import MountWatch, holding_mounts, mounts_of
 from slipwise.calibration.source_tables import PoseSourceTable
 from slipwise.export import export_model
 from slipwise.logs import Log, Poses, Run, open_log
@@ -137,6 +137,21 @@ def errors_of(calibration: Calibration) -> np.ndarray:
     held_out = calibration.model.content.verdict.held_out
     assert held_out is not None
     return np.array((held_out.position, held_out.heading))
+
+
+def test_a_drive_that_is_taken_in_stretches_gives_what_the_whole_drive_gives() -> None:
+    run, _ = rig(true_run(4))
+    (whole,) = mounts_of([run])
+    watch = MountWatch()
+    begin, end = run.span
+    for until in np.arange(begin + 60.0, end + 60.0, 60.0):  # each looks back by two minutes
+        watch.take(
+            run.with_each_source(lambda each, t=until: each.select((each.t > t - 120.0) & (each.t <= t)))
+        )
+    (mount,) = watch.mounts()
+    assert np.all(np.abs(mount.value - whole.value) < 0.5 * whole.std)
+    assert mount.std == pytest.approx(whole.std, rel=0.3)
+    assert 0.75 * whole.seconds < mount.seconds <= whole.seconds
 
 
 def test_positions_alone_tell_an_arm_and_no_heading() -> None:

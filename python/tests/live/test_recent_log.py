@@ -116,3 +116,19 @@ def test_nothing_is_found_of_a_sound_robot_and_little_is_kept() -> None:
     assert run.span[1] - run.span[0] == pytest.approx(KEPT, abs=0.1)
     recent.restart()
     assert recent.found() == ()
+
+
+def test_where_a_further_source_sits_is_learned_as_it_comes_and_at_the_end() -> None:
+    recent, early = RecentLog("wheel", 0.5), set[int]()
+    for sample in samples_of(LOG):
+        recent.take(replace(sample, source="gps") if isinstance(sample, Pose) else sample)
+        if isinstance(sample, Pose) and sample.t > 2.0:
+            x, y = sample.x + 0.3 * np.cos(sample.yaw), sample.y + 0.3 * np.sin(sample.yaw)
+            recent.take(replace(sample, t=sample.t + 0.05, x=x, y=y, source="map"), further=True)
+            early.add(len(recent.mounts()))
+    assert early == {0, 1}
+    (mount,) = recent.mounts(last=True)
+    assert (mount.name, mount.beside) == ("map", "gps")
+    assert np.all(np.abs(mount.value - (0.3, 0.0, 0.0, 0.05)) < 3.0 * mount.std + 1e-3)
+    recent.restart()
+    assert recent.mounts() == (mount,)
