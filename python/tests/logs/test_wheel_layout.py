@@ -27,6 +27,30 @@ TOWED = [
     for n, y in (("tl", 0.25), ("tr", -0.25))
 ]
 TOWING = VehicleDescription.model_validate({"wheels": AXLE + TOWED, "hinge": {"name": "hitch", "x": -0.5}})
+QUARTER = np.pi / 4.0
+MECANUM = VehicleDescription.model_validate(
+    {
+        "wheels": [
+            {"name": n, "x": x, "y": y, "radius": 0.1, "roller": -QUARTER if n in ("fl", "rr") else QUARTER}
+            for n, (x, y) in PLACES.items()
+        ]
+    }
+)
+KIWI = VehicleDescription.model_validate(
+    {
+        "wheels": [
+            {
+                "name": n,
+                "x": 0.2 * np.cos(a),
+                "y": 0.2 * np.sin(a),
+                "radius": 0.05,
+                "angle": a + 1.571,
+                "roller": 0.0,
+            }
+            for n, a in (("left", np.pi / 3.0), ("rear", np.pi), ("right", -np.pi / 3.0))
+        ]
+    }
+)
 T = 0.05 * np.arange(2400)
 
 
@@ -45,6 +69,17 @@ def swerve_readings() -> dict[str, Floats]:
     readings = {f"wheel_{name}": speed[:, k] for k, name in enumerate(PLACES)}
     readings |= {f"steer_{name}": steering[:, k] for k, name in enumerate(PLACES)}
     return {name: values + 0.005 * random.normal(size=len(T)) for name, values in readings.items()}
+
+
+def rolling_readings(vehicle: VehicleDescription) -> dict[str, Floats]:
+    layout = vehicle.layout
+    assert layout is not None
+    speed, _ = layout.wheels_for(twists())
+    random = np.random.default_rng(2)
+    return {
+        f"wheel_{wheel.name}": speed[:, k] + 0.005 * random.normal(size=len(T))
+        for k, wheel in enumerate(vehicle.wheels)
+    }
 
 
 def towing_readings() -> dict[str, Floats]:
@@ -125,6 +160,31 @@ def test_wheels_that_slide_across_are_no_fault_but_are_to_be_said() -> None:
     (found,) = found_in(rigid, {f"wheel_{name}": speeds for name, speeds in sides.items()})
     assert (found.spoils, found.reserves) == (False, True)
     assert "slides" in found.advice[0]
+
+
+def test_a_wheel_that_never_turns_is_found_where_the_others_do_not_need_it() -> None:
+    readings = rolling_readings(KIWI)
+    assert found_in(KIWI, readings) == ()
+    for begins in (0.0, 60.0):
+        (still,) = found_in(
+            KIWI, readings | {"wheel_rear": np.where(begins > T, readings["wheel_rear"], 0.0)}
+        )
+        assert (still.kind, still.spoils) == ("still-wheel", True)
+        assert f"wheel_rear stays at 0 rad/s for {120.0 - begins:.0f} s" in still.sentence
+    ahead = {"wheel_left": -readings["wheel_right"], "wheel_rear": 0.0 * T}  # along one line it need not turn
+    assert found_in(KIWI, readings | ahead) == ()
+
+
+def test_a_wheel_of_another_size_and_a_side_that_turns_backwards_are_named() -> None:
+    readings = rolling_readings(MECANUM)
+    assert found_in(MECANUM, readings) == ()
+    (larger,) = found_in(MECANUM, readings | {"wheel_fr": 1.3 * readings["wheel_fr"]})
+    assert (larger.spoils, larger.reserves) == (False, True)
+    assert "where fr turns 0.77 times as far as it counts" in larger.advice[0]
+    right = {name: -readings[name] for name in ("wheel_fr", "wheel_rr")}
+    (backwards,) = found_in(MECANUM, readings | right)
+    assert backwards.spoils
+    assert "fr and rr turn backwards (reversed)" in backwards.advice[0]
 
 
 def test_a_hinge_that_never_moves_is_found_and_one_that_counts_to_the_right() -> None:

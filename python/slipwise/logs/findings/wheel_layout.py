@@ -31,8 +31,10 @@ _ENOUGH = 100  # rows in which the wheels turn
 _MOST = 20_000  # rows that are looked at
 _SLIDES = "wheels that do not steer slide across (slides)"
 _FEW_WHEELS = 2  # of which either could be wrong
+_LEAST_FACTOR, _MOST_FACTOR = 0.2, 5.0  # of one wheel's speed beside the others
 _KEPT = 5_000  # rows that are kept of a live robot
-_STILL = 20.0  # s of turning in which a hinge keeps its angle
+_STILL = 20.0  # s of turning in which a reading stays
+_SIDES = 0.05  # of the other wheels' motion is not along one line, in which one of them may stand still
 _TURNS = 0.05  # rad/s
 _VARIES = 0.5  # of the yaw rate's spread over the log: a steady circle has one angle
 _DEGREES = math.pi / 180.0
@@ -66,12 +68,21 @@ class StillHinge(_OfReader):
     """The hinge of an articulated vehicle that never moves though it turns."""
 
     kind, family = "still-hinge", "encoders"
-    means = "the angle of a hinge stays though the vehicle turns this way and that"
+    means = "the angle of a hinge stays though the vehicle turns"
     shows = f"the same angle for {_STILL:.0f} s of turning"
-    cure = "its sensor; or describe the wheels on one side of it alone"
+    cure = "its sensor"
 
 
-LAYOUTS: tuple[Check, ...] = (WheelLayout(), StillHinge())
+class StillWheel(_OfReader):
+    """A wheel that never turns, or always as fast, though the others turn this way and that."""
+
+    kind, family = "still-wheel", "encoders"
+    means = "a wheel of a described vehicle stays, or turns as fast, though the others change"
+    shows = f"the same speed for {_STILL:.0f} s"
+    cure = "its encoder"
+
+
+LAYOUTS: tuple[Check, ...] = (WheelLayout(), StillHinge(), StillWheel())
 OF_LAYOUTS = {check.kind for check in LAYOUTS}
 
 
@@ -99,6 +110,15 @@ class LayoutWatch:
             return ()
         t, *values = np.array(rows).T
         return layout_findings(self._vehicle, self._names, dict(zip(self._names.all, values, strict=True)), t)
+
+
+@dataclass(frozen=True)
+class _Mistake:
+    """What may be wrong with a description or its readings, and the readings without it."""
+
+    what: str
+    corrected: _Read
+    harmless: bool = False  # the robot itself is so, and a model of it holds
 
 
 @dataclass(frozen=True)
@@ -200,8 +220,9 @@ def layout_findings(
         turning |= False if speed is None else read.readings[speed] != 0.0
     if turning.sum() < _ENOUGH:
         return ()
-    found = (_still_hinge(read), _contradiction(read))
-    return tuple(each for each in found if each is not None)[:1]  # the second would follow from the first
+    looked = [look(read) for look in (_still_hinge, _contradiction, _still_wheel)]
+    found = sorted((each for each in looked if each is not None), key=lambda each: not each.spoils)
+    return tuple(found[:1])  # the others would follow from the first
 
 
 def _contradiction(read: _Read) -> Finding | None:
@@ -213,72 +234,103 @@ def _contradiction(read: _Read) -> Finding | None:
         return None
     return WheelLayout.found(
         f"the wheels contradict each other by {100.0 * share:.0f} % of their speeds: no body rolls like that",
-        f"They agree to {100.0 * least:.1f} % where {', or where '.join(likely)}: correct that."
+        f"They agree to {100.0 * least:.1f} % where {', or where '.join(each.what for each in likely)}: "
+        "correct that."
         if likely
         else "Compare the description with the robot: names, x and y, reversed, steer_reversed, units.",
         evidence=share,
-        spoils=_SLIDES not in likely and (bool(likely) or share > _MUCH),  # the robot itself does that
+        spoils=not all(each.harmless for each in likely) if likely else share > _MUCH,
     )
 
 
-def _explained(read: _Read, share: float) -> tuple[float, list[str]]:
-    """Return what is left of the disagreement by the mistakes that explain it best, and these in words."""
-    for enough, changes in ((_SOME, _of_all), (_LITTLE, _of_some), (_MUCH, _left_out)):
-        tried = changes(read) if share > enough else ()
-        left = {what: changed.disagreement() for what, changed in tried}
-        least = min((rest for rest in left.values() if math.isfinite(rest)), default=math.inf)
+def _explained(read: _Read, share: float) -> tuple[float, list[_Mistake]]:
+    """Return what is left of the disagreement by the mistakes that explain it best, and these."""
+    for enough, mistakes in ((_SOME, _of_all), (_SOME, _of_size), (_LITTLE, _of_some), (_MUCH, _left_out)):
+        tried = list(mistakes(read)) if share > enough else []
+        left = [each.corrected.disagreement() for each in tried]
+        least = min(filter(math.isfinite, left), default=math.inf)
         if least < _EXPLAINS * share:
-            return least, [what for what, rest in left.items() if rest <= _ALIKE * least][:4]
+            alike = [each for each, rest in zip(tried, left, strict=True) if rest <= _ALIKE * least]
+            return least, alike[:4]
     return share, []
 
 
-def _of_all(read: _Read) -> Iterator[tuple[str, _Read]]:
-    """Yield mistakes with the whole description, and what the readings would be without them."""
+def _of_all(read: _Read) -> Iterator[_Mistake]:
+    """Yield mistakes with the whole description."""
     names = read.names
     steering = [name for name in names.steering if name is not None]
-    yield "left and right are exchanged (the signs of y)", read.with_each(lambda wheel: {"y": -wheel.y})
-    yield "front and rear are exchanged (the signs of x)", read.with_each(lambda wheel: {"x": -wheel.x})
+    mirrored = read.with_each(lambda wheel: {"y": -wheel.y})
+    yield _Mistake("left and right are exchanged (the signs of y)", mirrored)
+    yield _Mistake(
+        "front and rear are exchanged (the signs of x)", read.with_each(lambda wheel: {"x": -wheel.x})
+    )
     if any(map(_rigid, read.vehicle.wheels)):
-        yield _SLIDES, read.with_each(lambda wheel: {"slides": wheel.slides or _rigid(wheel)})
+        sliding = read.with_each(lambda wheel: {"slides": wheel.slides or _rigid(wheel)})
+        yield _Mistake(_SLIDES, sliding, harmless=True)
     if steering:
         turned = read.with_each(lambda wheel: {"steer_reversed": not wheel.steer_reversed})
-        yield "angles of steering count to the right (steer_reversed)", turned
+        yield _Mistake("angles of steering count to the right (steer_reversed)", turned)
         yield from _in_degrees(read, "angles of steering are degrees", steering)
     if names.hinge is not None and read.vehicle.hinge is not None:
         hinge = read.vehicle.hinge
         ahead = hinge.model_copy(update={"x": -hinge.x})
-        yield "the hinge has the other sign of x", read.described(hinge=ahead)
-        yield f"{names.hinge} counts to the right", read.with_readings([names.hinge], -1.0)
+        yield _Mistake("the hinge has the other sign of x", read.described(hinge=ahead))
+        yield _Mistake(f"{names.hinge} counts to the right", read.with_readings([names.hinge], -1.0))
         yield from _in_degrees(read, f"{names.hinge} is in degrees", [names.hinge])
 
 
-def _of_some(read: _Read) -> Iterator[tuple[str, _Read]]:
-    """Yield mistakes with one or two wheels, and what the readings would be without them."""
-    wheels = read.vehicle.wheels
+def _of_size(read: _Read) -> Iterator[_Mistake]:
+    """Yield wheels of another size, whose speeds go with the others' by a factor."""
+    for place, name in enumerate(read.names.speeds):
+        if name is None:
+            continue
+        squares = [float(np.sum(read.with_readings([name], k).twists().squares)) for k in (0.0, 1.0, 2.0)]
+        bend = squares[0] - 2.0 * squares[1] + squares[2]  # they are a parabola of the factor
+        if not bend > 0.0:
+            continue
+        factor = 0.5 + (squares[0] - squares[1]) / bend
+        if _LEAST_FACTOR < factor < _MOST_FACTOR:
+            wheel = read.vehicle.wheels[place].name
+            what = f"{wheel} turns {factor:.2f} times as far as it counts (its radius, ticks or gear)"
+            yield _Mistake(what, read.with_readings([name], factor), harmless=True)
+
+
+def _of_some(read: _Read) -> Iterator[_Mistake]:
+    """Yield mistakes with one or two wheels."""
+    wheels, driven = read.vehicle.wheels, _driven(read)
+    for count in (1, 2):
+        for some in combinations(driven, count) if len(driven) > _FEW_WHEELS * (count - 1) else ():
+            turned = read
+            for place in some:
+                turned = turned.with_wheel(place, reversed=not wheels[place].reversed)
+            names = " and ".join(wheels[place].name for place in some)
+            yield _Mistake(f"{names} turn{'s' if count == 1 else ''} backwards (reversed)", turned)
     for first, second in combinations(range(len(wheels)), 2):
         if (wheels[first].steer is None) == (wheels[second].steer is None):
             pair = f"{wheels[first].name} and {wheels[second].name} are exchanged"
-            yield pair, read.exchanged(first, second)
+            yield _Mistake(pair, read.exchanged(first, second))
     for place, wheel in enumerate(wheels):
-        if wheel.driven:
-            backwards = read.with_wheel(place, reversed=not wheel.reversed)
-            yield f"{wheel.name} turns backwards (reversed)", backwards
         angle = read.names.steering[place]
         if angle is not None:
             counted = read.with_wheel(place, steer_reversed=not wheel.steer_reversed)
-            yield f"the steering of {wheel.name} counts to the right (steer_reversed)", counted
+            yield _Mistake(f"the steering of {wheel.name} counts to the right (steer_reversed)", counted)
             yield from _in_degrees(read, f"the steering of {wheel.name} is in degrees", [angle])
 
 
-def _left_out(read: _Read) -> Iterator[tuple[str, _Read]]:
-    """Yield what the readings would be without one of three or more speeds, or without all of one wheel."""
-    wheels = read.vehicle.wheels
-    driven = [place for place, name in enumerate(read.names.speeds) if name is not None]
+def _left_out(read: _Read) -> Iterator[_Mistake]:
+    """Yield one of three or more speeds, and all that one wheel says."""
+    wheels, driven = read.vehicle.wheels, _driven(read)
     for place in driven if len(driven) > _FEW_WHEELS else ():
-        yield f"the speed of {wheels[place].name} is wrong or missing", read.without_speed(place)
+        without = read.without_speed(place)
+        yield _Mistake(f"the speed of {wheels[place].name} is wrong or missing", without)
         if wheels[place].steer is not None:
-            others = [k for k in range(len(wheels)) if k != place]
-            yield f"nothing that {wheels[place].name} says is read", read.of_wheels(others)
+            others = read.of_wheels([k for k in range(len(wheels)) if k != place])
+            yield _Mistake(f"nothing that {wheels[place].name} says is read", others)
+
+
+def _driven(read: _Read) -> list[int]:
+    """Return the places of the wheels whose speeds are read."""
+    return [place for place, name in enumerate(read.names.speeds) if name is not None]
 
 
 def _rigid(wheel: WheelDescription) -> bool:
@@ -286,9 +338,9 @@ def _rigid(wheel: WheelDescription) -> bool:
     return wheel.steer is None and wheel.roller is None and not wheel.slides
 
 
-def _in_degrees(read: _Read, what: str, names: Sequence[str]) -> Iterator[tuple[str, _Read]]:
+def _in_degrees(read: _Read, what: str, names: Sequence[str]) -> Iterator[_Mistake]:
     if max(float(np.max(np.abs(read.readings[name]))) for name in names) > _FEW_DEGREES:
-        yield what, read.with_readings(names, _DEGREES)
+        yield _Mistake(what, read.with_readings(names, _DEGREES))
 
 
 def _still_hinge(read: _Read) -> Finding | None:
@@ -299,20 +351,43 @@ def _still_hinge(read: _Read) -> Finding | None:
     turns = np.isfinite(omega) & (np.abs(omega) > _TURNS)
     if not turns.any():
         return None
-    angle, spread = read.readings[name], float(np.std(omega[turns]))
-    moved = np.flatnonzero(np.diff(angle) != 0.0) + 1
-    steps = np.clip(np.diff(read.t, append=read.t[-1:]), 0.0, 1.0)
-    for rows in np.split(np.arange(len(angle)), moved):
-        mine = rows[turns[rows]]
-        seconds = float(np.sum(steps[mine]))
-        if seconds >= _STILL and float(np.std(omega[mine])) > _VARIES * spread:
+    spread = float(np.std(omega[turns]))
+    for mine, seconds in _still(read, name, turns):
+        if float(np.std(omega[mine])) > _VARIES * spread:
             return StillHinge.found(
-                f"{name} stays at {angle[rows[0]]:.3g} rad for {seconds:.0f} s in which the vehicle turns "
-                "this way and that",
+                f"{name} stays at {read.readings[name][mine[0]]:.3g} rad for {seconds:.0f} s in which the "
+                "vehicle turns this way and that",
                 "Repair the sensor of the hinge, or describe the wheels on one side of it alone.",
                 evidence=seconds,
             )
     return None
+
+
+def _still_wheel(read: _Read) -> Finding | None:
+    speeds = [name for name in read.names.speeds if name is not None]
+    for name in speeds if len(speeds) > _FEW_WHEELS else ():
+        others = np.array([read.readings[other] for other in speeds if other != name])
+        for mine, seconds in _still(read, name, np.any(others != 0.0, axis=0, keepdims=False)):
+            along, across = np.linalg.eigvalsh(np.cov(others[:, mine]))[:-3:-1].tolist()
+            if across > _SIDES * along and along > _VARIES**2 * np.cov(others).trace():
+                return StillWheel.found(
+                    f"{name} stays at {read.readings[name][mine[0]]:.3g} rad/s for {seconds:.0f} s in which "
+                    "the other wheels turn this way and that",
+                    "Repair its encoder, or describe the other wheels alone.",
+                    evidence=seconds,
+                )
+    return None
+
+
+def _still(read: _Read, name: str, turns: NDArray[np.bool_]) -> Iterator[tuple[NDArray[np.int64], float]]:
+    """Yield the rows of the vehicle's turning in which a reading stays for long, and for how long [s]."""
+    values = read.readings[name]
+    steps = np.clip(np.diff(read.t, append=read.t[-1:]), 0.0, 1.0)
+    for rows in np.split(np.arange(len(values)), np.flatnonzero(np.diff(values) != 0.0) + 1):
+        mine = rows[turns[rows]]
+        seconds = float(np.sum(steps[mine]))
+        if seconds >= _STILL:
+            yield mine, seconds
 
 
 def _turns_ahead(read: _Read) -> Floats:
