@@ -45,6 +45,14 @@ class SidewaysSpeed(Check):
         ahead, left = ways.explained
         if ahead < _EXPLAINED:
             return None
+        crossed = ways.crossed
+        if ways.sideways and crossed > _EXPLAINED:
+            name = seen.words.name
+            return self.found(
+                f"the poses move to the left as the {name} turn, and turn as these move to the left",
+                "Exchange both columns, or two wheels of the description.",
+                evidence=crossed,
+            )
         if left > _NOT_EXPLAINED:
             return self._of_gains(ways, seen.words.name)
         return self._lost_sign(ways, seen.words.name) or self._left_out(ways, seen.words.name)
@@ -108,6 +116,7 @@ class _Ways:
     """What poses move ahead and to the left on the robot in N windows, fitted to the inputs."""
 
     moved: Floats  # [N, 2] m
+    turned: Floats  # [N] rad
     given: Floats  # [N, 3] m and rad: forward, sideways, rotation
     gains: Floats  # [3, 2]
 
@@ -115,6 +124,17 @@ class _Ways:
     def sideways(self) -> bool:
         """Whether the inputs drive sideways."""
         return bool(self.given[:, 1].any())
+
+    @property
+    def crossed(self) -> float:
+        """Which part of ways to the left the rotation gives, and of turns the sideways speed: the smaller.
+
+        It is zero where either gives its own.
+        """
+        gains = np.column_stack((self.gains[1:, 1], robust_fit(self.given, self.turned)[0][1:]))
+        wanted = _sizes(np.column_stack((self.moved[:, 1], self.turned)))
+        parts = np.abs(gains) * np.divide.outer(_sizes(self.given[:, 1:]), wanted)
+        return float(min(parts[1, 0], parts[0, 1])) if max(parts[0, 0], parts[1, 1]) < _NOT_EXPLAINED else 0.0
 
     @property
     def left_over(self) -> Floats:
@@ -139,7 +159,9 @@ def _ways(seen: Seen) -> _Ways | None:
     way = (w.distance * np.exp(1j * w.course_ahead(seen.sensor_yaw)))[near]
     moved = np.column_stack((way.real, way.imag))
     given = np.column_stack((w.forward, w.sideways, w.rotation))[near]
-    return _Ways(moved, given, np.column_stack([robust_fit(given, each)[0] for each in moved.T]))
+    return _Ways(
+        moved, w.turn[near], given, np.column_stack([robust_fit(given, each)[0] for each in moved.T])
+    )
 
 
 def _sizes(values: Floats) -> tuple[float, float]:

@@ -51,6 +51,7 @@ FAULTS: dict[str, tuple[Change, str]] = {
     "without its sign": (sideways(np.abs), "the sideways speed lost its sign"),
     "in cm/s": (sideways(lambda vy: 100.0 * vy), "the sideways speed is in another unit"),
     "in km/s": (sideways(lambda vy: 0.001 * vy), "the sideways speed is in another unit"),
+    "the yaw rate": (lambda w: replace(w, vy=w.omega, omega=w.vy), "turn as these move to the left"),
     "not there": (sideways(np.zeros_like), "no sideways speed of the wheels tells of"),
 }
 
