@@ -20,6 +20,7 @@ MUCH = 1.2  # ratio to the baseline beyond which an error is worse by a fault of
 LEAST_EXPLAINED = 0.5  # of the motion; a model that explains less follows inputs of something else
 _SHOWS = 2.8  # times the mean error over the root of the segments, from which on a steady slip shows
 _DRIVEN = (0.2, 0.2)  # m and rad in a segment; what is hardly driven shows no slip for that reason
+_LARGER = 1.05  # ratio to the baseline from which on an error is said to be larger, though by chance perhaps
 SAME = 1.01  # ratio to the baseline up to which an error counts as the same; both print alike then
 
 Ratio = tuple[float, float, float]  # of two mean errors, with its 95 % interval
@@ -90,6 +91,17 @@ class Judgement:
     def worse(self) -> tuple[str, ...]:
         """Which of position and heading are worse than the baseline's, by more than chance explains."""
         return tuple(name for name, (value, low, _) in self._ratios().items() if value > MUCH or low > SAME)
+
+    @property
+    def perhaps_worse(self) -> dict[str, float]:
+        """Ratios to the baseline of errors that are larger, though by chance perhaps; of what was driven."""
+        return {
+            name: ratio[0]
+            for (name, ratio), motion, least in zip(
+                self._ratios().items(), self.commanded, _DRIVEN, strict=True
+            )
+            if ratio[0] > _LARGER and motion > least and name not in self.worse
+        }
 
     def fault(self) -> str:
         """Say why the method does not beat the kinematic baseline; empty where it does."""

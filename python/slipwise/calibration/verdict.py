@@ -192,10 +192,14 @@ def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
     partly = [
         f"{each.sentence[0].upper()}{each.sentence[1:]}." for each in facts.contradictions if each.reserves
     ]
+    larger = [
+        f"Its {name} error is {number_text(ratio)} times the baseline's, which may be chance."
+        for name, ratio in judgement.perhaps_worse.items()
+    ]
     honest = "" if judgement.consistency is None else judgement.consistency.sentence()
     courses = POSITIONS_ONLY if facts.positions else ""
     turns = YAW_RATES_ONLY if judgement.held_out.turns_alone else ""
-    return tuple(sentence for sentence in (honest, *partly, courses, turns) if sentence)
+    return tuple(sentence for sentence in (*larger, honest, *partly, courses, turns) if sentence)
 
 
 def _figures(held_out: HeldOut) -> str:

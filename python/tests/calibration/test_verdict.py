@@ -235,6 +235,16 @@ def test_a_worse_error_is_named_with_how_much_worse_it_is() -> None:
     )
 
 
+def test_an_error_that_is_larger_by_chance_perhaps_is_a_reservation_where_it_was_driven() -> None:
+    larger = judged((1.06, 0.9, 1.2), BETTER)
+    for commanded, reservations in (
+        ((2.0, 0.5), ("Its position error is 1.06 times the baseline's, which may be chance.",)),
+        ((0.1, 0.5), ()),
+    ):
+        verdict = give_verdict(replace(larger, commanded=commanded), Identified(2, ()), facts())
+        assert (verdict.good, verdict.reservations) == (True, reservations)
+
+
 def test_inputs_that_do_not_explain_the_motion_give_no_good_model_though_it_beats_the_baseline() -> None:
     verdict = give_verdict(judged(BETTER, BETTER, still=1.05), Identified(2, ()), facts())
     assert not verdict.good
