@@ -35,8 +35,10 @@ from slipwise.calibration.result import Calibration
 from slipwise.calibration.same_log import learned_before
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.settings_for_log import for_positions, for_the_ground_of
+from slipwise.calibration.shares import PoseSensor
 from slipwise.calibration.shortage import shortage_advice, silence, unused_measurements, unused_wheels
 from slipwise.calibration.smoothing import smooth as smooth_windows
+from slipwise.calibration.unlike_logs import unlike_logs
 from slipwise.calibration.verdict import LogFacts
 from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.logs.findings.checks import findings_in, findings_of_log, findings_of_others
@@ -147,11 +149,12 @@ def found_contradictions(
     """Return where poses and inputs contradict each other, and what `start` had learned already."""
     log, input_name, settings = given
     evidence = learned.evidence
+    runs = [run.run for run in drive]
     if evidence is None:
-        evidence = evidence_of([run.run for run in drive], settings.segment.unknown_after)
+        evidence = evidence_of(runs, settings.segment.unknown_after)
     seen = Seen(
         evidence=evidence,
-        runs=[run.run.name for run in drive],
+        runs=[run.name for run in runs],
         input_name=input_name,
         positions=has_course(log.runs),
         gyro=has_course(log.runs) or gyro_alone(log.runs),
@@ -160,8 +163,12 @@ def found_contradictions(
     )
     unknown_after = settings.segment.unknown_after
     first = findings_in(seen)
+    place = settings.sensor_extrinsics
+    sensor = PoseSensor(place.y, place.yaw, seen.positions)
+    together = () if seen.commanded.throttle else unlike_logs(evidence.windows, runs, input_name, sensor)
     return (
         *first,
+        *together,
         *findings_of_others(log, input_name, unknown_after, first),
         *findings_of_log(WholeLog(log, input_name, unknown_after)),
         *learned_before(log, start),

@@ -52,6 +52,12 @@ class Fit:
         """Return how much comes out in the end."""
         return float(self.coefficients().sum())
 
+    def explained(self) -> float:
+        """Return which part of the squares of the rates about their mean comes of the inputs."""
+        rates = self.rates_out()
+        left = np.square(rates - self.inputs @ self.coefficients()).sum()
+        return float(1.0 - left / np.square(rates - rates.mean()).sum())
+
     def scatter(self, number: Callable[[Fit], float]) -> float:
         """Return the standard deviation of a number, by leaving a tenth of the windows out in turn."""
         left = [number(self.only(self.parts != part)) for part in range(BLOCKS)]

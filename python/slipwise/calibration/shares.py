@@ -52,6 +52,15 @@ class PoseSensor:
 _PLAIN = PoseSensor()
 
 
+@dataclass(frozen=True)
+class Answer:
+    """What the body does of one axis of an input."""
+
+    share: Share
+    explained: float  # part of the squares of its rates
+    varied: float  # m/s or rad/s, standard deviation of the input
+
+
 def shares_of(rows: Floats, sensor: PoseSensor = _PLAIN) -> Shares | None:
     """Return the shares that arrive; None where too few windows say it.
 
@@ -65,6 +74,25 @@ def shares_of(rows: Floats, sensor: PoseSensor = _PLAIN) -> Shares | None:
     lost = sensor.positions and _lost(rows, axes["yaw_rate"])
     speed, yaw_rate = _axis(rows, axes["speed"]), None if lost else _axis(rows, axes["yaw_rate"])
     return Shares(speed=speed, yaw_rate=yaw_rate) if speed or yaw_rate else None
+
+
+def answers_of(rows: Floats, input_name: str, sensor: PoseSensor = _PLAIN) -> dict[str, Answer]:
+    """Return what the body does of an input, by axis; of axes of which enough windows say it.
+
+    Args:
+        rows: windows, as `_core.MotionEvidence` has them.
+        input_name: "command" or "wheel".
+        sensor: what is known of the pose sensor.
+    """
+    if len(rows) < _FEWEST:
+        return {}
+    found = {}
+    for name, axis in _axes(rows, sensor).items():
+        fit = axis.to_body(_COMMANDS if input_name == "command" else _WHEELS)
+        share = _share(fit)
+        if share is not None:
+            found[name] = Answer(share, fit.explained(), float(np.std(fit.inputs[:, NOW])))
+    return found
 
 
 def commanded_to_body(rows: Floats, sensor: PoseSensor = _PLAIN) -> dict[str, tuple[Floats, Floats]]:
