@@ -201,6 +201,7 @@ def judged_content(
         seconds=seconds,
         segments=segments,
         positions=facts.positions,
+        scale=log.scales.get(input_name),
     )
     return judged, model_content(learned, judged, origin)
 

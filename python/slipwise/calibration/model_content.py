@@ -17,6 +17,7 @@ from slipwise.calibration.learner import Posterior
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.settings_for_log import RESIDUALS
 from slipwise.calibration.shares import PoseSensor, shares_of
+from slipwise.logs.log import Scale
 from slipwise.models import schema
 from slipwise.models.body_force import force_names
 from slipwise.models.car import car_rows
@@ -35,6 +36,7 @@ class ModelFacts:
     seconds: float  # of all segments learned
     segments: int
     positions: bool = False  # only positions were measured
+    scale: Scale | None = None  # that its input was read with
 
 
 def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema.ModelFile:
@@ -68,6 +70,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
             learned_seconds=facts.seconds,
             learned_segments=facts.segments,
             residuals_per_segment=RESIDUALS if facts.positions else None,
+            input_scale=None if facts.scale is None else list(facts.scale),
         ),
         verdict=schema.VerdictSection(
             good=verdict.good,

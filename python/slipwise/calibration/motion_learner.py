@@ -36,7 +36,7 @@ from slipwise.logs.findings.checks import findings_in, findings_of_log, findings
 from slipwise.logs.findings.finding import Finding
 from slipwise.logs.findings.seen import Seen, WholeLog
 from slipwise.logs.findings.steering import Commanded
-from slipwise.logs.log import Log
+from slipwise.logs.log import Log, Scale
 from slipwise.models import Model, parse_model
 from slipwise.models.schema import LogReference, ModelFile, Range
 
@@ -120,6 +120,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
         self._logs: dict[str, str] = {}  # that were pushed, where they are known: paths by their SHA-256
         self.found: tuple[Finding, ...] = ()  # what was wrong at the last judgement of a stream
         self._clocks_compared = False
+        self._scale: Scale | None = None  # of the input, as it is read
 
     def start_run(self, name: str) -> None:
         """Begin a run: nothing is joined across runs; what was learned stays."""
@@ -245,6 +246,7 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
             seconds=model.seconds,
             segments=model.segments,
             positions=self._positions,
+            scale=self._scale,
         )
         content = self._remembered(model_content(learned, judged, origin), learned)
         return model_of(content, Log(()), found, self._mounts), judged.judgement
@@ -267,6 +269,10 @@ class MotionLearner(Measurements, PathAhead, RememberedSurfaces):
     def know_clocks(self, *, compared: bool) -> None:
         """Take whether stamps were compared with the times of arrival: a delay beyond 1 s is then real."""
         self._clocks_compared = compared
+
+    def know_scale(self, scale: Scale) -> None:
+        """Take what the speed and the yaw rate of the input are multiplied by, as they are read."""
+        self._scale = None if scale == (1.0, 1.0) else scale
 
     def contradictions(self) -> tuple[Finding, ...]:
         """Return what shows that poses and inputs cannot both be right, of all that was pushed."""

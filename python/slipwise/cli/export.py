@@ -34,6 +34,13 @@ class TargetName(StrEnum):
     all = "all"
 
 
+class InputScale(StrEnum):
+    """Whose numbers a scale of the log's input corrects."""
+
+    log = "log"
+    robot = "robot"
+
+
 def export(
     model: ModelFile,
     to: Annotated[
@@ -103,6 +110,9 @@ def export(
     logged: Annotated[
         list[str] | None,
         optional("NAME=VALUE", "The autopilot's parameter while the log was recorded; repeatable."),
+    ] = None,
+    input_scale: Annotated[
+        InputScale | None, optional("log|robot", "Whose numbers --command-scale or --wheel-scale corrected.")
     ] = None,
     surface: Annotated[str | None, optional("NAME", "One of the surfaces that the model remembers.")] = None,
     merge: Annotated[

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from typing import Literal
 
 from slipwise.argument_types import check_arguments
 from slipwise.errors import SettingsError
@@ -62,6 +63,7 @@ class ExportOptions:
     omni: bool = False  # the robot drives sideways, too
     small_alphas: bool = False  # write alphas of AMCL that are below its default
     wheel_base: float | None = None  # m, of a vehicle that steers
+    input_scale: Literal["log", "robot"] | None = None  # whose numbers a scale of the log's input corrects
     no_side_slip: bool = False  # the robot does not slip sideways: what looks like it is a sensor's mount
     px4: str | None = None  # version, such as 1.17
     ardupilot: str | None = None  # version, such as 4.6

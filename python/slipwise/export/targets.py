@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from slipwise.argument_types import check_arguments
 from slipwise.errors import ModelError, SettingsError
@@ -109,12 +109,12 @@ def _mounts(model: Model, options: ExportOptions, origin: list[str]) -> Exported
     return Exported(mounts_text(found, origin), values)
 
 
-_WHEELS = {"wheel_separation", "logged_separation_multiplier"}
+_WHEELS = {"wheel_separation", "logged_separation_multiplier", "input_scale"}
 _FIRMWARE = frozenset({*_WHEELS, "limits", "logged", "min_turning_radius", "wheel_base"})
 _DIFF_DRIVE = frozenset(
     {*_WHEELS, "logged_radius_multiplier", "horizon", "limits", "min_turning_radius", "update_rate"}
 )
-_MPPI = frozenset({"limits", "min_turning_radius", "planning_horizon"})
+_MPPI = frozenset({"limits", "min_turning_radius", "planning_horizon", "input_scale"})
 
 TARGETS = (
     Target(
@@ -131,24 +131,24 @@ TARGETS = (
         "nav2_amcl.yaml",
         _parameters(amcl),
         input="wheel",
-        reads=frozenset({"horizon", "omni", "small_alphas"}),
+        reads=frozenset({"horizon", "omni", "small_alphas", "input_scale"}),
     ),
     Target(
         "robot-localization",
         "robot_localization.yaml",
         _parameters(robot_localization),
-        reads=frozenset({"horizon", "stamped_commands", "filter_rate"}),
+        reads=frozenset({"horizon", "stamped_commands", "filter_rate", "input_scale"}),
     ),
     Target(
         "autoware",
         "autoware.param.yaml",
         _parameters(autoware),
         input="wheel",
-        reads=frozenset({"wheel_base", "logged"}),
+        reads=frozenset({"wheel_base", "logged", "input_scale"}),
     ),
     Target("px4", "px4.params", _firmware(px4), reads=_FIRMWARE | {"px4"}),
     Target("ardupilot", "ardupilot.param", _firmware(ardupilot), reads=_FIRMWARE | {"ardupilot"}),
-    Target("c-header", "model.h", _c_header, sideways=True),
+    Target("c-header", "model.h", _c_header, sideways=True, reads=frozenset({"input_scale"})),
 )
 #: Of models with several sources of poses, or whose slip is said to be one.
 MOUNTS = Target("mounts", "sensor_mounts.txt", _mounts, sideways=True, reads=frozenset({"no_side_slip"}))
@@ -195,7 +195,32 @@ def export_model(
         refuse_sideways(part, f"files of {target}")
     if not force:
         refuse_bad_verdict(part)
-    return made.make(part, options or ExportOptions(), origin_lines(part, name))
+    return made.make(part, _unscaled(part, made, options or ExportOptions()), origin_lines(part, name))
+
+
+def _unscaled(model: Model, target: Target, options: ExportOptions) -> ExportOptions:
+    """Return options by which numbers are for what the robot itself says, where a log was read with a scale.
+
+    Raises:
+        ModelError: nobody says whether the robot itself is wrong by it, or the file cannot hold that.
+    """
+    scale = model.content.provenance.input_scale
+    if scale is None or "input_scale" not in target.reads or options.input_scale == "log":
+        return options
+    speed, yaw_rate = scale
+    if options.input_scale == "robot" and "logged_radius_multiplier" in target.reads:
+        return replace(
+            options,
+            logged_radius_multiplier=options.logged_radius_multiplier * speed,
+            logged_separation_multiplier=options.logged_separation_multiplier * speed / yaw_rate,
+        )
+    inputs = {"command": "commands", "wheel": "wheel speeds"}[model.content.input]
+    raise ModelError(
+        f"the {inputs} of the log were multiplied by {speed:g} and {yaw_rate:g}, and {target.name} takes the "
+        "robot's own",
+        advice="--input-scale log where the robot's own are right, and the log has another unit; else mend "
+        "the robot and record again, or let diff-drive mend it by --input-scale robot",
+    )
 
 
 def for_target(model: Model, target: Target) -> Model:

@@ -94,6 +94,7 @@ def build_node(  # noqa: PLR0913 (all that a node is made of)
     if learner is None and table.memory and start is not None and before is None:
         said.note(math.nan, "the start model remembers no surfaces: the memory starts empty")
     learner = learner or _new_learner(input_name, settings, before, wheels=transport.wheels)
+    learner.know_scale(read.command_scale if input_name == "command" else read.wheel_scale)
     learning = Learning(learner, start, valid, said)
     rules = rules_for(start)
     gates = Gates(rules, input_name=input_name)

@@ -35,7 +35,9 @@ def scaled_inputs(log: Log, options: LogOptions) -> Log:
         )
         for run in log.runs
     )
-    return replace(log, runs=runs, notes=(*log.notes, *notes))
+    kinds = {"command": options.command_scale, "wheel": options.wheel_scale}
+    scales = {kind: factors for kind, factors in kinds.items() if factors != _AS_IT_IS}
+    return replace(log, runs=runs, notes=(*log.notes, *notes), scales=scales)
 
 
 def turned_poses(log: Log, options: LogOptions) -> Log:

@@ -229,6 +229,9 @@ class Source:
     rows: int  # rows of a table, messages of a bag
 
 
+Scale = tuple[float, float]  # what the speed and the yaw rate of an input were multiplied by
+
+
 @dataclass(frozen=True, eq=False)
 class Log:
     """Everything read from one or several files.
@@ -245,6 +248,7 @@ class Log:
     clocks_compared: bool = False  # header stamps were compared with the times of receipt
     sideways: bool = False  # the vehicle is known to drive sideways too
     found: tuple[Finding, ...] = ()  # what its reader found to be wrong; the notes say it too
+    scales: Mapping[str, Scale] = field(default_factory=dict)  # of "command" and "wheel", that were not 1
 
     def with_found(self, *found: Finding) -> Log:
         """Return the log with what else was found to be wrong, which is noted."""

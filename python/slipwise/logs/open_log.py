@@ -212,6 +212,7 @@ def joined(logs: list[Log]) -> Log:
         clocks_compared=all(log.clocks_compared for log in logs),
         sideways=any(log.sideways for log in logs),
         found=tuple(each for log in logs for each in log.found),
+        scales={kind: scale for log in reversed(logs) for kind, scale in log.scales.items()},
     )
 
 

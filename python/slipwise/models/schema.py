@@ -190,6 +190,7 @@ class Provenance(Section):
     learned_segments: int
     residuals_per_segment: Positive | None = None  # independent, behind each factor of noise; None: 1
     prior: LogReference | None = None  # the fleet that learning began with
+    input_scale: list[Finite] | None = None  # of speed and yaw rate, as the log's were read; None: 1
 
 
 class HeldOut(Section):

@@ -21,7 +21,9 @@ from slipwise.calibration import Calibration, calibrate, make_settings
 from slipwise.calibration.calibrate import JUDGING_HORIZONS
 from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation import EvaluationOptions, evaluate
-from slipwise.logs import Log, Run, empty_poses
+from slipwise.logs import Log, LogOptions, Run, empty_poses
+from slipwise.logs.corrections import scaled_inputs
+from slipwise.models.model import parse_model
 from slipwise.models.slip_words import slip_gains
 from slipwise.models.summary import summarise
 
@@ -198,3 +200,11 @@ def test_runs_of_equal_names_stay_apart() -> None:
     history = calibrate(Log(runs=(one, other)), input="wheel").history
     assert history is not None
     assert sorted(set(history.run.tolist())) == [0, 1]
+
+
+def test_a_model_says_with_which_scale_its_log_was_read() -> None:
+    log = scaled_inputs(simulated_log(Drive()), LogOptions(wheel_scale=(0.5, 0.25)))
+    wheels, commands = (calibrate(log, input=name).model for name in ("wheel", "command"))
+    assert wheels.content.provenance.input_scale == [0.5, 0.25]
+    assert commands.content.provenance.input_scale is None
+    assert parse_model(wheels.to_yaml(), where="m").content.provenance.input_scale == [0.5, 0.25]

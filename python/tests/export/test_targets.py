@@ -130,6 +130,7 @@ GIVEN = ExportOptions(
     omni=True,
     small_alphas=True,
     wheel_base=2.5,
+    input_scale="robot",
     no_side_slip=True,
     px4="1.17",
     ardupilot="4.6",
@@ -173,6 +174,34 @@ def test_wheels_whose_sensor_was_learned_are_exported_to_autopilots() -> None:
 
 
 @pytest.mark.slow
+def test_a_log_that_was_read_with_a_scale_asks_whose_numbers_were_wrong(subtests: pytest.Subtests) -> None:
+    for target in TARGETS:
+        with subtests.test(target.name):
+            plain = make_model(fitting(target))
+            read_so = with_scale(plain, (0.5, 0.25))
+            with pytest.raises(ModelError, match=r"of the log were multiplied by 0\.5 and 0\.25"):
+                export_model(read_so, target.name, name="m", options=VERSIONS)
+            of_log = replace(VERSIONS, input_scale="log")
+            values = export_model(read_so, target.name, name="m", options=of_log).values
+            assert values == export_model(plain, target.name, name="m", options=VERSIONS).values
+
+
+def test_a_robot_that_is_wrong_by_the_scale_of_its_log_gets_multipliers_that_mend_it() -> None:
+    plain = make_model(FITTING["diff-drive"])
+    read_so, robot = with_scale(plain, (0.5, 0.25)), replace(VERSIONS, input_scale="robot")
+    given = replace(VERSIONS, logged_radius_multiplier=0.5, logged_separation_multiplier=2.0)
+    values = export_model(read_so, "diff-drive", name="m", options=robot).values
+    assert values == export_model(plain, "diff-drive", name="m", options=given).values
+    with pytest.raises(ModelError, match="amcl takes the robot's own"):
+        export_model(read_so, "amcl", name="m", options=robot)
+
+
+def with_scale(model: Model, scale: tuple[float, float]) -> Model:
+    """Return it as one of a log that was read with a scale."""
+    origin = model.content.provenance.model_copy(update={"input_scale": list(scale)})
+    return Model(model.content.model_copy(update={"provenance": origin}))
+
+
 def test_every_file_of_a_husky_on_tile_is_written(real_log_dir: Path) -> None:
     log = open_log(real_log_dir / "husky/tile_deflated_tyres.csv.gz")
     settings = make_settings({"basis": "full-linear-6"})
