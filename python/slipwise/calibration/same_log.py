@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Logs that are learned a second time: their SHA-256 says it, whatever their files are called."""
+"""Logs that are learned a second time: their SHA-256 or their poses say it, whatever files are called."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.findings.finding import Finding
@@ -14,6 +16,8 @@ if TYPE_CHECKING:
     from slipwise.logs.log import Log, Run
     from slipwise.models.model import Model
 
+_ALIKE = 0.5  # of the poses of a run
+_FEWEST = 20  # poses at other places, with fewer of which nothing is said
 _TWICE = "what it has seen of it counts twice, standard deviations are too small, and figures prove little"
 
 
@@ -37,6 +41,29 @@ def refuse_same_log(log: Log) -> None:
             what = "a log is given twice" if seen[drive] == path else f"the same log as {seen[drive]}"
             raise LogError(what, where=path, advice="give it once")
         seen[drive] = path
+    _refuse_same_poses(log)
+
+
+def _refuse_same_poses(log: Log) -> None:
+    """Refuse a file half of whose poses are those of another, by stamps and places: a part, or edited."""
+    held_by: dict[bytes, str] = {}
+    for run in log.runs if len(log.sources) > 1 else ():
+        path = run.files[0] if run.files else ""
+        places = _places(run)
+        before = Counter(held_by[place] for place in places if place in held_by)
+        for other, number in before.most_common(1):
+            if other != path and number >= max(_FEWEST, _ALIKE * len(places)):
+                raise LogError(f"the same drive as in {other}", where=path, advice="give it once")
+        for place in places if path else ():
+            held_by.setdefault(place, path)
+
+
+def _places(run: Run) -> set[bytes]:
+    """Return where a run was when, as bytes of stamps with places; of a robot that stands, the first."""
+    rows = np.column_stack((run.poses.t, run.poses.x, run.poses.y))
+    moved = np.ones(len(rows), np.bool_)
+    moved[1:] = (np.diff(rows[:, 1:], axis=0) != 0.0).any(axis=1)
+    return {row.tobytes() for row in rows[moved]}
 
 
 def _measured(run: Run) -> bytes:

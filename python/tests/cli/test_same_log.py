@@ -47,6 +47,18 @@ def test_a_log_given_twice_is_refused(slipwise: Slipwise, log: Path, copy: Path)
         assert other.line == f"the same log as {log} ({copy}): give it once"
 
 
+def test_a_part_of_a_log_and_an_edited_copy_are_refused(slipwise: Slipwise, log: Path, folder: Path) -> None:
+    lines = log.read_text().splitlines()
+    half, noted = folder / "half.csv", folder / "noted.csv"
+    half.write_text("\n".join(lines[: len(lines) // 2]) + "\n")
+    noted.write_text("\n".join([f"{lines[0]},note", *(f"{line},x" for line in lines[1:])]) + "\n")
+    for other in (half, noted):
+        for call in (("calibrate",), ("evaluate", "--memory")):
+            result = slipwise(*call, log, other)
+            assert result.code == 2
+            assert result.line == f"the same drive as in {log} ({other}): give it once"
+
+
 def test_parts_of_one_file_are_other_drives(log: Path) -> None:
     parts = [open_log(log, end=30.0), open_log(log, start=30.0)]
     refuse_same_log(joined(parts))
