@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -156,6 +156,7 @@ def contest_of(
         for item in sets
         if len(item) < 2
     )
+    notes += tuple(_read_otherwise(log, input_name, options))
     if not targets:
         raise LogError(
             "the log has no two windows of any horizon asked for",
@@ -174,6 +175,19 @@ def contest_of(
         options.embargo,
     )
     return contest, notes
+
+
+def _read_otherwise(log: Log, input_name: str, options: EvaluationOptions) -> Iterator[str]:
+    """Say which models have learned inputs that were multiplied by other factors than those of the log."""
+    scale = log.scales.get(input_name, (1.0, 1.0))
+    for name, model in options.models.items():
+        learned = tuple(model.content.provenance.input_scale or (1.0, 1.0))
+        if learned != scale:
+            (speed, turn), (own, own_turn) = learned, scale
+            yield (
+                f"{name} has learned inputs times {speed:g} and {turn:g}, and those of this log are times "
+                f"{own:g} and {own_turn:g}: give the same --{input_name}-scale"
+            )
 
 
 def _more_windows(sets: Sequence[WindowSet]) -> str:

@@ -15,7 +15,8 @@ from slipwise.calibration.statistics import held_out_half
 from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.evaluation.result import Score
-from slipwise.logs import Log, Source, empty_poses
+from slipwise.logs import Log, LogOptions, Source, empty_poses
+from slipwise.logs.corrections import scaled_inputs
 
 SLIP = _core.named_basis("edd-2")
 DRIVE = Drive(seconds=60.0, basis=SLIP, alpha=(-0.1, -0.4))
@@ -133,6 +134,16 @@ def test_model_of_another_drive_is_causal_and_of_the_same_log_is_not(log: Log) -
     fresh, seen = (evaluate(x, options=options).score("model", 2.0) for x in (other, log))
     assert (fresh.causal, seen.causal) == (True, False)
     assert fresh.position_ratio[0] < 0.2
+
+
+def test_a_model_of_inputs_that_were_scaled_otherwise_is_said(log: Log) -> None:
+    read_so = scaled_inputs(log, LogOptions(wheel_scale=(0.5, 1.0)))
+    model = calibrate(read_so, input="wheel", settings=make_settings({"basis": "edd-2"})).model
+    options = EvaluationOptions(methods=("none", "model"), horizons=(2.0,), model=model)
+    plain, same = (evaluate(each, options=options).notes for each in (log, read_so))
+    said = "model has learned inputs times 0.5 and 1, and those of this log are times 1 and 1"
+    assert any(each.startswith(said) for each in plain)
+    assert not any(each.startswith(said) for each in same)
 
 
 def test_model_of_another_ground_is_judged_by_the_ellipsoids_that_its_file_states(log: Log) -> None:
