@@ -9,7 +9,7 @@ late its stamps are. A source that drifts over more than a window does no harm, 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,7 @@ from slipwise.models.parameter_table import ParameterTable
 Floats = NDArray[np.float64]
 
 _FEWEST_WINDOWS = 6
-_MOST_WINDOWS = 120  # of a source, that a stream keeps
+_MOST_STRETCHES = 6  # of a source, that a stream keeps
 _TELLING = 16.0  # times the prior's information, from which on windows tell something
 _FARTHEST = np.array([50.0, 50.0, np.pi, LATEST])  # m, m, rad, s
 _GRID = np.arange(-LATEST + 0.1, LATEST, 0.2)  # s, where the search for the lateness begins
@@ -101,7 +101,7 @@ def mounts_of(runs: Sequence[Run], place: tuple[float, float, float] = (0.0, 0.0
 
 
 class MountWatch:
-    """Where further sources sit while they are driven: some hundred windows are kept, the older the fewer.
+    """Where further sources sit while they are driven: some stretches are kept, the older the fewer.
 
     Args:
         place: where the first source sits in base_link (x, y [m], yaw [rad]).
@@ -113,6 +113,7 @@ class MountWatch:
         self._seconds: dict[tuple[str, bool], float] = {}
         self._until = -np.inf  # s, when the last stretch ended
         self._beside = ""
+        self._found: dict[tuple[str, bool], Mount] = {}
 
     def restart(self) -> None:
         """Another recording begins, or the clock was set."""
@@ -134,18 +135,21 @@ class MountWatch:
 
     def mounts(self) -> tuple[Mount, ...]:
         """Return the mounts by all that is kept; of those that too few windows show, none."""
-        found = (
-            _mount_by(name, self._beside, windows, self._seconds[name, heading], heading=heading)
-            for (name, heading), windows in self._windows.items()
-        )
-        return tuple(each for each in found if each is not None)
+        for which, windows in self._windows.items():
+            name, heading = which
+            before = self._found.get(which)
+            start = None if before is None or before.untold() else before.value
+            found = _mount_by(name, self._beside, windows, start, heading=heading)
+            if found is not None:
+                self._found[which] = replace(found, seconds=self._seconds[which])
+        return tuple(self._found.values())
 
     def _keep(self, which: tuple[str, bool], windows: Windows) -> None:
         kept = self._windows.setdefault(which, [])
         kept.append(windows)
         self._seconds[which] = self._seconds.get(which, 0.0) + windows.seconds()
-        if sum(map(len, kept)) > _MOST_WINDOWS:
-            kept[:] = [each.some(np.arange(len(each)) % 2 == 0, len(each.t)) for each in kept]
+        if len(kept) > _MOST_STRETCHES:
+            del kept[1:-1:2]
 
 
 def holding_mounts(model: Model, mounts: Sequence[Mount]) -> Model:
@@ -160,19 +164,20 @@ def _mount(name: str, beside: str, runs: Sequence[Run], place: tuple[float, floa
     found = (windows_in(run, run.others[name], place) for run in runs if name in run.others)
     windows = [each for each in found if each is not None]
     heading = not any(run.others[name].course for run in runs if name in run.others)
-    return _mount_by(name, beside, windows, sum(each.seconds() for each in windows), heading=heading)
+    return _mount_by(name, beside, windows, heading=heading)
 
 
 def _mount_by(
-    name: str, beside: str, windows: Sequence[Windows], seconds: float, *, heading: bool
+    name: str, beside: str, windows: Sequence[Windows], start: Floats | None = None, *, heading: bool
 ) -> Mount | None:
+    """Return the mount by these windows, looked for around a start where there is one."""
     if sum(map(len, windows)) < _FEWEST_WINDOWS:
         return None
-    starts = [np.array([0.0, 0.0, 0.0, late]) for late in _GRID]
-    few = _few(windows)
-    best = min((_rough(few, start, heading=heading) for start in starts), key=lambda each: each[0])[1]
-    value, covariance = _fit(windows, best, heading=heading)
-    return Mount(name, beside, value, covariance, seconds, heading)
+    if start is None:
+        few, starts = _few(windows), [np.array([0.0, 0.0, 0.0, late]) for late in _GRID]
+        start = min((_rough(few, each, heading=heading) for each in starts), key=lambda each: each[0])[1]
+    value, covariance = _fit(windows, start, heading=heading)
+    return Mount(name, beside, value, covariance, sum(each.seconds() for each in windows), heading)
 
 
 def _few(windows: Sequence[Windows]) -> list[Windows]:

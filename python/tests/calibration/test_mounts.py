@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from copy import deepcopy
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -139,6 +140,10 @@ def errors_of(calibration: Calibration) -> np.ndarray:
     return np.array((held_out.position, held_out.heading))
 
 
+def moved_on(later: float, poses: Poses) -> Poses:
+    return replace(poses, t=poses.t + later)
+
+
 def test_a_drive_that_is_taken_in_stretches_gives_what_the_whole_drive_gives() -> None:
     run, _ = rig(true_run(4))
     (whole,) = mounts_of([run])
@@ -152,6 +157,12 @@ def test_a_drive_that_is_taken_in_stretches_gives_what_the_whole_drive_gives() -
     assert np.all(np.abs(mount.value - whole.value) < 0.5 * whole.std)
     assert mount.std == pytest.approx(whole.std, rel=0.3)
     assert 0.75 * whole.seconds < mount.seconds <= whole.seconds
+    for later in 1000.0 * np.arange(1, 40):  # the same drive again and again
+        watch.restart()
+        watch.take(run.with_each_source(partial(moved_on, later)))
+    (longer,) = watch.mounts()
+    assert longer.seconds > 30.0 * whole.seconds
+    assert np.all(np.abs(longer.value - whole.value) < whole.std)
 
 
 def test_positions_alone_tell_an_arm_and_no_heading() -> None:
