@@ -13,7 +13,7 @@ namespace slipwise {
 namespace {
 
 TEST_CASE("without a time constant the output is the input at once") {
-  const LagStep step = lag_step(0.4, 2.0, 0.0, 0.5);
+  const LagStep step = linearize_lag_step(0.4, 2.0, 0.0, 0.5).value;
   CHECK(step.output == 2.0);
   CHECK(step.integral == 1.0);
 }
@@ -36,7 +36,7 @@ TEST_CASE("derivatives of a lag step are its derivatives by duration, output and
       CAPTURE(time_constant);
       CAPTURE(duration);
       const auto at = [](const Eigen::VectorXd& p) -> Eigen::VectorXd {
-        const LagStep step = lag_step(p[1], 1.4, p[2], p[0]);
+        const LagStep step = linearize_lag_step(p[1], 1.4, p[2], p[0]).value;
         return Eigen::Vector2d(step.output, step.integral);
       };
       const Eigen::Vector3d point(duration, 0.3, time_constant);

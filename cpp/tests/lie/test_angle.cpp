@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wrapping to one turn and choosing a branch.
+// Wrapping to one turn.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -27,12 +27,6 @@ TEST_CASE("a wrapped angle lies in (-pi, pi] and points the same way") {
 TEST_CASE("half a turn to either side wraps to plus pi") {
   CHECK(wrap_angle(kPi) == kPi);
   CHECK(wrap_angle(-kPi) == kPi);
-}
-
-TEST_CASE("unwrapping finds the branch nearest to the reference") {
-  CHECK(unwrap_near(0.1, 4.0 * kPi) == doctest::Approx(4.0 * kPi + 0.1).epsilon(1e-14));
-  CHECK(unwrap_near(3.0, -3.0) == doctest::Approx(3.0 - 2.0 * kPi).epsilon(1e-14));
-  CHECK(unwrap_near(-0.2, 0.3) == doctest::Approx(-0.2).epsilon(1e-14));
 }
 
 }  // namespace

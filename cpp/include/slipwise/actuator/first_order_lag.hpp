@@ -83,8 +83,4 @@ T lag_output(const T& output, const T& input, const T& time_constant, const T& d
   return value_of(time_constant) > 0.0 ? output + (output - input) * expm1(-duration / time_constant) : input;
 }
 
-inline LagStep lag_step(double output, double input, double time_constant, double duration) {
-  return linearize_lag_step(output, input, time_constant, duration).value;
-}
-
 }  // namespace slipwise

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Angles on the real line: wrapping to one turn, and choosing the branch nearest to a reference.
+// Angles wrapped to one turn.
 #pragma once
 
 #include <cmath>
@@ -15,8 +15,5 @@ inline double wrap_angle(double angle) {
   const double wrapped = std::remainder(angle, 2.0 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }
-
-/// `angle` [rad] shifted by whole turns so that it lies within half a turn of `reference` [rad].
-inline double unwrap_near(double angle, double reference) { return reference + wrap_angle(angle - reference); }
 
 }  // namespace slipwise
