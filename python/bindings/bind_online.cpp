@@ -318,9 +318,8 @@ void bind_online(nb::module_& m) {
       .def("cue_surface", locked(&MotionLearner::cue_surface), "label"_a = "",
            "The surface changes now: to the one of this name, or to another where it is empty.")
       .def("completed", locked(&MotionLearner::completed), "A copy whose run has ended.")
-      .def("probable_surfaces", locked([](const MotionLearner& learner) {
-             return surface_probabilities(learner.learned().hypotheses().bank());
-           }),
+      .def("probable_surfaces",
+           locked([](const MotionLearner& learner) { return learner.learned().hypotheses().bank().probabilities(); }),
            "How probable each surface is to be the one under the robot; empty if none are remembered.")
       .def("surfaces", locked(&MotionLearner::surfaces), "The surfaces that are remembered, as they are known now.")
       .def("on_surface", locked([](const MotionLearner& learner, const Surface& surface, std::size_t structure) {

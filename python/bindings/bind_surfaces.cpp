@@ -180,7 +180,7 @@ void bind_surfaces(nb::module_& m) {
   nb::class_<SurfaceBank>(m, "SurfaceBank", "The surfaces that are remembered.")
       .def_prop_ro("surfaces", [](const SurfaceBank& bank) { return bank.surfaces(); })
       .def_prop_ro("present", &SurfaceBank::present)
-      .def_prop_ro("label_reliability", &SurfaceBank::label_reliability)
+      .def_prop_ro("label_reliability", [](const SurfaceBank& bank) { return bank.labels().reliability(); })
       .def_prop_ro("labels", [](const SurfaceBank& bank) {
         return std::array<double, 2>{bank.labels().all, bank.labels().right};
       });

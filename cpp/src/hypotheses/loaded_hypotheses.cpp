@@ -114,7 +114,7 @@ void SurfaceBank::check_loaded(const SurfaceBank& made,
   if (trial_) {
     trial_->check_loaded(averages[leader_]->average().model(), surfaces_.size());
     const std::size_t count = trial_->candidates().size();
-    require(held_ ? count == 2 : count == heard_factors_.size(), "a trial of surfaces has other candidates");
+    require(held_ ? count == 2 : heard_.fits(count), "a trial of surfaces has other candidates");
   }
 }
 

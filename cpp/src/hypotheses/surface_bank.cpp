@@ -25,42 +25,46 @@ void for_each(const Averages& averages, const Use& use) {
   }
 }
 
-}  // namespace
-
-void Driven::see(const InputHistory& inputs, const Segment& segment) {
-  seconds += segment.end - segment.start;
-  ++segments;
-  speeds.see(inputs, segment);
+SurfaceEvent::Kind event_of(Kind taken) {
+  const auto another = taken == Kind::Known ? SurfaceEvent::Kind::Recalled : SurfaceEvent::Kind::Opened;
+  return taken == Kind::Present ? SurfaceEvent::Kind::Kept : another;
 }
 
-void Driven::take_in(const Driven& later) {
-  if (later.segments > 0) {
-    seconds += later.seconds;
-    segments += later.segments;
-    speeds.begin_with(later.speeds.reference(), later.seconds);
+void mark_parting(const Averages& averages, double since) {
+  for_each(averages, [&](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(since); });
+}
+
+/// Slip may be that of the candidates that are known. The present one is what goes on.
+void recall(const Averages& averages, const SurfaceTrial& trial, const SurfaceList& surfaces) {
+  for_each(averages, [&](std::size_t i, RememberingAverage& average) {
+    std::vector<RecalledSurface> known;
+    for (std::size_t k = 0; k < trial.candidates().size(); ++k) {
+      const SurfaceCandidate& each = trial.candidates()[k];
+      if (each.kind == Kind::Known && each.place != surfaces.present() && surfaces[each.place].memories[i]) {
+        known.push_back({.memory = *surfaces[each.place].memories[i],
+                         .probability = trial.probabilities()[static_cast<Eigen::Index>(k)]});
+      }
+    }
+    average.average().recall(known);
+  });
+}
+
+/// What is said before any segment speaks counts for predictions too.
+void weigh(SurfaceTrial& trial, const Eigen::VectorXd& log_factors, const Averages& averages,
+           const SurfaceList& surfaces) {
+  trial.weigh(log_factors);
+  if (trial.segments() == 0) {
+    recall(averages, trial, surfaces);
   }
 }
 
-SurfaceBank::SurfaceBank(const SurfaceSettings& settings) : settings_(settings) {}
+}  // namespace
 
 void SurfaceBank::see(const InputHistory& inputs, const Segment& segment) {
   if (!settings_.remember) {
     return;
   }
-  (trial_ && !held_ ? driven_in_trial_ : driven_).see(inputs, segment);
-}
-
-/// What was driven since it was taken is counted.
-void SurfaceBank::flush(Surface& surface) {
-  if (driven_.segments > 0) {
-    surface.speeds = fastest(surface.speeds, driven_.speeds.reference());
-  }
-  surface.seconds += driven_.seconds;
-  surface.segments += driven_.segments;
-  surface.last_seen = date_.empty() ? surface.last_seen : date_;
-  add_visit(heard_, surface.classes);
-  heard_.clear();
-  driven_ = {};
+  visit_.see(inputs, segment, trial_ && !held_);
 }
 
 /// As it is now; a surface that was hardly driven is not kept.
@@ -68,20 +72,20 @@ void SurfaceBank::keep_present(const Averages& averages, const DisturbanceModel&
   if (!settings_.remember) {
     return;
   }
-  for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(kNow); });
-  driven_.take_in(std::exchange(driven_in_trial_, {}));
+  mark_parting(averages, kNow);
+  visit_.stay();
   leave_present(averages, law);
 }
 
 /// What was known of the present surface at parting is remembered.
 void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel& law) {
-  const int fewest = wanted_.empty() ? settings_.fewest : settings_.soonest;  // a label says that there is one
-  if (!surfaces_.present() && std::cmp_less(driven_.segments, fewest)) {
+  const int fewest = labels_.wanted().empty() ? settings_.fewest : settings_.soonest;  // a label says that there is one
+  if (!surfaces_.present() && std::cmp_less(visit_.segments(), fewest)) {
     return;
   }
-  Surface& surface =
-      surfaces_.present() ? surfaces_[*surfaces_.present()] : surfaces_.enter(std::exchange(wanted_, {}));
-  flush(surface);
+  Surface& surface = surfaces_.present() ? surfaces_[*surfaces_.present()] : surfaces_.enter(labels_.take_wanted());
+  visit_.leave(surface);
+  heard_.leave(surface);
   for_each(averages, [&](std::size_t i, RememberingAverage& average) {
     const auto& parting = average.parting();
     surface.memories[i] = parting ? *parting : average.average().remember();
@@ -113,9 +117,13 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
   }
 }
 
+std::vector<SurfaceProbability> SurfaceBank::probabilities() const {
+  return settings_.remember ? surface_probabilities(surfaces_, trial_) : std::vector<SurfaceProbability>{};
+}
+
 void SurfaceBank::know(std::vector<Surface> surfaces, const LabelCounts& labels) {
   surfaces_.know(std::move(surfaces));
-  labels_ = labels;
+  labels_.know(labels);
 }
 
 std::vector<std::string> SurfaceBank::add(const Averages& averages, const DisturbanceModel& law,
@@ -132,10 +140,9 @@ std::vector<std::string> SurfaceBank::add(const Averages& averages, const Distur
 
 void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
                        double since) {
-  weigh_by_label(candidates);
-  heard_in_trial_.clear();
-  heard_factors_.assign(candidates.size(), 0.0);
-  for_each(averages, [&](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(since); });
+  labels_.weigh(candidates, surfaces_);
+  heard_.begin_trial(candidates.size());
+  mark_parting(averages, since);
   const RememberingAverage& leader = *averages[leader_];
   std::vector<SurfaceMemory> known;
   for (const Surface& surface : surfaces_.all()) {  // an average that began later has not learned the older ones
@@ -143,31 +150,6 @@ void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, st
     known.push_back(memory ? *memory : leader.average().remember());
   }
   trial_.emplace(std::move(candidates), known, leader, law, since);
-}
-
-/// Slip may be that of the candidates that are known. The present one is what goes on.
-void SurfaceBank::recall(const Averages& averages) const {
-  const SurfaceTrial& trial = slipwise::present(trial_);
-  for_each(averages, [&](std::size_t i, RememberingAverage& average) {
-    std::vector<RecalledSurface> known;
-    for (std::size_t k = 0; k < trial.candidates().size(); ++k) {
-      const SurfaceCandidate& each = trial.candidates()[k];
-      if (each.kind == Kind::Known && each.place != surfaces_.present() && surfaces_[each.place].memories[i]) {
-        known.push_back({.memory = *surfaces_[each.place].memories[i],
-                         .probability = trial.probabilities()[static_cast<Eigen::Index>(k)]});
-      }
-    }
-    average.average().recall(known);
-  });
-}
-
-/// What is said before any segment speaks counts for predictions too.
-void SurfaceBank::weigh_trial(const Averages& averages, const Eigen::VectorXd& log_factors) {
-  SurfaceTrial& trial = slipwise::present(trial_);
-  trial.weigh(log_factors);
-  if (trial.segments() == 0) {
-    recall(averages);
-  }
 }
 
 void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& law, const DriveStart& start) {
@@ -180,110 +162,142 @@ void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& 
     let_go();
   }
   keep_present(averages, law);
-  date_ = start.date;
-  label_ = start.label;
-  wanted_ = surfaces_.size() == 0 ? label_ : "";
-  heard_.clear();
-  doubted_for_.clear();
+  visit_.start_drive(start.date);
+  labels_.start_drive(start.label, surfaces_);
+  heard_.begin();
   if (surfaces_.size() > 0) {
     open(averages, law, candidates_of_start(surfaces_.size(), settings_), kNow);
-    recall(averages);
+    recall(averages, slipwise::present(trial_), surfaces_);
     surfaces_.leave();
   }
 }
 
 /// Something says that the surface may be another from now on.
 void SurfaceBank::suspect(const Averages& averages, const DisturbanceModel& law) {
-  const bool doubted = held_;
-  let_go();
+  const bool doubted = let_go();
   if (surfaces_.size() > 0) {  // what it parts from is what was known before the suspicion
     open(averages, law, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_), kNow);
   }
   for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.average().expect_change(); });
   if (trial_) {
-    recall(averages);
+    recall(averages, *trial_, surfaces_);
   }
 }
 
-bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const DisturbanceModel& law) {
+/// A label says nothing new where it is the one that speaks already, or names the surface that is driven on.
+void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, const std::string& label) {
+  const bool open_already = trial_.has_value() && !held_;
+  const std::string named = open_already ? labels_.label() : labels_.name_here(surfaces_);
+  const bool same = !label.empty() && label == named;
+  if (!settings_.remember || same || (open_already && label.empty())) {
+    return;
+  }
+  if (open_already && trial_->segments() < settings_.soonest) {
+    labels_.say(label);
+    weigh(*trial_, labels_.factors(trial_->candidates(), surfaces_).log(), averages, surfaces_);
+    return;
+  }
+  if (open_already) {  // what was driven so far was on one surface
+    settle(averages, law, true);
+  }
+  keep_present(averages, law);
+  labels_.change(label, surfaces_);
+  suspect(averages, law);
+}
+
+void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, const TerrainAnswer& answer) {
+  check_answer(answer);
   if (!settings_.remember) {
-    return false;
+    return;
+  }
+  const ClassCounts said = even_odds(answer);
+  if (!trial_ || held_) {
+    const auto candidates = candidates_of_change(surfaces_.size(), surfaces_.present(), held_, settings_);
+    if (!heard_.hear(said, candidates, surfaces_, labels_.name_here(surfaces_))) {
+      return;
+    }
+    keep_present(averages, law);
+    labels_.say("");
+    suspect(averages, law);
+  }
+  SurfaceTrial& trial = slipwise::present(trial_);
+  weigh(trial, heard_.hear_in_trial(said, trial.candidates(), surfaces_, labels_.name_here(surfaces_)), averages,
+        surfaces_);
+}
+
+void SurfaceBank::consider(const Averages& averages, std::size_t leader, const DisturbanceModel& law) {
+  if (!settings_.remember) {
+    return;
   }
   const auto changed_since = averages[leader]->take_change();
   if (trial_) {
     trial_->follow(*averages[leader_]);
     if (!held_) {
-      return settle(averages, law, false);
+      settle(averages, law, false);
+      return;
     }
     if (!changed_since) {
-      return doubt();
+      doubt();
+      return;
     }
   }
-  const bool doubted = held_;
-  let_go();
+  const bool doubted = let_go();
   leader_ = leader;
   if (!changed_since) {
-    return false;
+    return;
   }
   if (surfaces_.size() > (surfaces_.present() ? 1 : 0)) {
-    label_.clear();
+    labels_.say("");
     open(averages, law, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_),
          *changed_since);
-    return false;
+    return;
   }
-  for_each(averages, [&](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(*changed_since); });
+  mark_parting(averages, *changed_since);
   leave_present(averages, law);
-  enter_new();
-  return false;
+  heard_.forget_doubt();
+  surfaces_.leave_for_new(settings_.most);
 }
 
-/// A surface that was recalled turns out to be another, which is like it but for a jump. Whether it did.
-bool SurfaceBank::doubt() {
+/// A surface that was recalled turns out to be another, which is like it but for a jump.
+void SurfaceBank::doubt() {
   const SurfaceTrial& trial = slipwise::present(trial_);
   const double another = trial.probabilities()[1];
   const int segments = trial.segments();
   if (another >= 1.0 - settings_.false_alarm) {
     --surfaces_[slipwise::present(surfaces_.present())].visits;
     let_go();
-    wanted_ = !label_.empty() && !surfaces_.taken(label_) ? label_ : "";
-    take({.kind = Kind::New}, "", another, segments);
-    return true;
-  }
-  if (segments >= settings_.trial) {
+    labels_.name_new(surfaces_);
+    heard_.forget_doubt();
+    surfaces_.take({.kind = SurfaceEvent::Kind::Opened, .name = "", .probability = another, .segments = segments},
+                   settings_.most);
+  } else if (segments >= settings_.trial) {
     let_go();
   }
-  return false;
 }
 
-/// What was recalled is no longer doubted.
-void SurfaceBank::let_go() {
+/// What was recalled is no longer doubted. Whether it was.
+bool SurfaceBank::let_go() {
   if (held_) {
     trial_.reset();
-    held_ = false;
   }
+  return std::exchange(held_, false);
 }
 
-/// One that has no entry yet gets one when it is left.
-void SurfaceBank::enter_new() {
-  doubted_for_.clear();
-  surfaces_.leave_for_new(settings_.most);
-}
-
-/// Takes a candidate where it is certain enough, or time is over, or at once. Whether one was taken. A known surface is
-/// doubted until time is over.
-bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, bool at_once) {
+/// Takes a candidate where it is certain enough, or time is over, or at once. A known surface is doubted until time is
+/// over.
+void SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, bool at_once) {
   SurfaceTrial& trial = slipwise::present(trial_);
   const auto& candidates = trial.candidates();
   const bool at_start = candidates.front().kind != Kind::Present;
-  const SurfaceDecision decision = trial.decide(label_factors(candidates), settings_);
+  const SurfaceDecision decision = trial.decide(labels_.factors(candidates, surfaces_), settings_);
   if (!at_once && !decision.sure && trial.segments() < settings_.trial) {
-    return false;
+    return;
   }
   const bool another = decision.another > decision.probability;
   SurfaceCandidate taken = candidates[decision.known];
   double probability = decision.probability;
-  const bool named = taken.kind == Kind::Known && surfaces_[taken.place].name == label_;
-  const bool labelled = at_once && !label_.empty() && (another ? !surfaces_.taken(label_) : named);
+  const bool named = taken.kind == Kind::Known && surfaces_[taken.place].name == labels_.label();
+  const bool labelled = at_once && !labels_.label().empty() && (another ? !surfaces_.taken(labels_.label()) : named);
   const bool suspected = !decision.sure && !at_start && !labelled && trial.probabilities()[0] >= settings_.doubt;
   const bool apart = !decision.sure && at_start && !named;  // is kept apart until it is known better
   if (!suspected && (another || apart)) {
@@ -305,39 +319,18 @@ bool SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
     leave_present(averages, law);
   }
   if (taken.kind == Kind::Present) {
-    driven_.take_in(std::exchange(driven_in_trial_, {}));
+    visit_.stay();
   } else {  // what filters find that began before is no change of what is taken
-    driven_ = std::exchange(driven_in_trial_, {});
+    visit_.come_to_another();
     for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.forget_recent(); });
   }
-  hear_on(taken.kind);
-  take(taken, judge_label(taken, recalled, decision.sure), probability, segments);
+  heard_.end_trial(taken.kind != Kind::Present);
+  const std::string name = labels_.judge(taken, recalled, decision.sure, surfaces_);
+  surfaces_.take({.kind = event_of(taken.kind), .name = name, .probability = probability, .segments = segments},
+                 settings_.most);
   if (!surfaces_.present()) {
     let_go();
   }
-  return true;
-}
-
-/// Counts and says what was taken.
-void SurfaceBank::take(const SurfaceCandidate& candidate, const std::string& recalled, double probability,
-                       int segments) {
-  SurfaceEvent event{.kind = SurfaceEvent::Kind::Kept,
-                     .name = surfaces_.present_name(),
-                     .probability = probability,
-                     .segments = segments};
-  if (candidate.kind == Kind::Known) {
-    event.kind = SurfaceEvent::Kind::Recalled;
-    event.name = recalled;
-    const std::size_t place = surfaces_.place_of(recalled);
-    if (place < surfaces_.size()) {  // else it was merged into the one that was left, and that one is driven on
-      surfaces_.come_to(place);
-    }
-  } else if (candidate.kind != Kind::Present) {
-    event.kind = SurfaceEvent::Kind::Opened;
-    event.name = "";
-    enter_new();
-  }
-  surfaces_.say(std::move(event));
 }
 
 }  // namespace slipwise

@@ -17,6 +17,13 @@ std::size_t SurfaceList::place_of(const std::string& name) const {
   return static_cast<std::size_t>(std::ranges::find(surfaces_, name, &Surface::name) - surfaces_.begin());
 }
 
+std::string SurfaceList::name_of(const SurfaceCandidate& candidate) const {
+  if (candidate.kind == SurfaceCandidate::Kind::Known) {
+    return surfaces_[candidate.place].name;
+  }
+  return candidate.kind == SurfaceCandidate::Kind::Present ? present_name() : "";
+}
+
 bool SurfaceList::numbered(const std::string& name) {
   return name.starts_with(kNumbered) && name.find_first_not_of("0123456789 ()", kNumbered.size()) == std::string::npos;
 }
@@ -50,16 +57,24 @@ Surface& SurfaceList::enter(const std::string& wanted) {
   return surfaces_.back();
 }
 
-void SurfaceList::come_to(std::size_t place) {
-  present_ = place;
-  ++surfaces_[place].visits;
-  surfaces_[place].used = ++clock_;
-}
-
 void SurfaceList::leave_for_new(std::size_t most) {
   leave();
   ++clock_;
   drop_least_used(most - 1);
+}
+
+void SurfaceList::take(SurfaceEvent taken, std::size_t most) {
+  const std::size_t place = place_of(taken.name);
+  if (taken.kind == SurfaceEvent::Kind::Kept) {
+    taken.name = present_name();
+  } else if (taken.kind != SurfaceEvent::Kind::Recalled) {
+    leave_for_new(most);
+  } else if (place < size()) {  // else it was merged into the one that was left, and that one is driven on
+    present_ = place;
+    ++surfaces_[place].visits;
+    surfaces_[place].used = ++clock_;
+  }
+  say(std::move(taken));
 }
 
 void SurfaceList::merge(std::size_t older_place, std::size_t newer_place) {

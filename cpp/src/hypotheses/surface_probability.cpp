@@ -6,18 +6,15 @@
 
 namespace slipwise {
 
-std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank) {
-  if (!bank.settings().remember) {
-    return {};
-  }
-  const std::optional<SurfaceTrial>& trial = bank.trial();
+std::vector<SurfaceProbability> surface_probabilities(const SurfaceList& surfaces,
+                                                      const std::optional<SurfaceTrial>& trial) {
   if (!trial) {
-    return {{.name = bank.name_of({.kind = SurfaceCandidate::Kind::Present}), .probability = 1.0}};
+    return {{.name = surfaces.present_name(), .probability = 1.0}};
   }
   std::vector<SurfaceProbability> found;
   const Eigen::VectorXd probabilities = trial->probabilities();
   for (std::size_t i = 0; i < trial->candidates().size(); ++i) {
-    const std::string name = bank.name_of(trial->candidates()[i]);
+    const std::string name = surfaces.name_of(trial->candidates()[i]);
     auto place = std::ranges::find(found, name, &SurfaceProbability::name);
     if (place == found.end()) {
       place = found.insert(place, {.name = name, .probability = 0.0});

@@ -233,7 +233,7 @@ void SegmentLearner::publish(const DrivenSegment& segment, double wheel_interval
   LearnerEvent event{.kind = LearnerEvent::Kind::SegmentLearned, .t = end};
   event.updates = hypotheses_.updates();
   event.weights = hypotheses_.weights();
-  event.surfaces = surface_probabilities(hypotheses_.bank());
+  event.surfaces = hypotheses_.bank().probabilities();
   for (std::size_t i = 0; i < kStructures; ++i) {
     event.posteriors[i] = supported(hypotheses_.of(static_cast<Structure>(i)), wheel_interval, hypotheses_.count());
   }

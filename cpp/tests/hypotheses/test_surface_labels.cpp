@@ -44,7 +44,7 @@ TEST_CASE("a label names a new surface, and a wrong one is overruled") {
   CHECK(bank.surfaces()[*bank.present()].name == "grass");
   CHECK(bank.surfaces().front().name == "ice");
   CHECK(bank.surfaces().front().last_seen == "2026-01-01");
-  CHECK(bank.label_reliability() < 0.95);
+  CHECK(bank.labels().reliability() < 0.95);
 }
 
 TEST_CASE("a surface that only had a number gets the name of a label") {
@@ -60,10 +60,10 @@ TEST_CASE("labels that were wrong are believed less") {
   MotionLearner learner(surface_settings(true));
   labelled(learner, "ice", 0.5, 60);
   labelled(learner, "grass", 0.1, 61);
-  const double before = learner.surfaces().label_reliability();
+  const double before = learner.surfaces().labels().reliability();
   labelled(learner, "grass", 0.5, 62);
   CHECK(present_name(learner) == "ice");
-  CHECK(learner.surfaces().label_reliability() < before);
+  CHECK(learner.surfaces().labels().reliability() < before);
   labelled(learner, "ice", 0.5, 63);
   CHECK(learner.surfaces().labels().all == learner.surfaces().labels().right + 1.0);
 }

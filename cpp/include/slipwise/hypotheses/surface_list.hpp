@@ -35,6 +35,8 @@ class SurfaceList {
   std::optional<std::size_t> present() const { return present_; }
   /// Its name; empty where there is none.
   std::string present_name() const { return present_ ? surfaces_[*present_].name : ""; }
+  /// The name of a candidate; empty where it has none, as one that changed: it becomes another when it is taken.
+  std::string name_of(const SurfaceCandidate& candidate) const;
 
   /// The place of the one of this name; `size` where there is none.
   std::size_t place_of(const std::string& name) const;
@@ -48,18 +50,18 @@ class SurfaceList {
   std::string add(Surface other);
   /// The one that is driven on gets an entry, with the name that is wanted where that is free.
   Surface& enter(const std::string& wanted);
-  /// One of them is driven on again.
-  void come_to(std::size_t place);
   /// None is driven on that is known.
   void leave() { present_.reset(); }
   /// The same, and a new one is driven on, for which there is room among so many.
   void leave_for_new(std::size_t most);
+  /// The one of the event's name is driven on again, a new one for which there is room among so many, or still the
+  /// present one.
+  void take(SurfaceEvent taken, std::size_t most);
   /// The older one keeps its name, unless only the newer one has a name of its own.
   void merge(std::size_t older_place, std::size_t newer_place);
   /// Until at most so many are left; never the present one.
   void drop_least_used(std::size_t most);
 
-  void say(SurfaceEvent event);
   /// What happened since the last call; the oldest are dropped where they wait for long.
   std::vector<SurfaceEvent> take_events() { return std::exchange(events_, {}); }
 
@@ -71,6 +73,7 @@ class SurfaceList {
 
  private:
   void drop(std::size_t place);
+  void say(SurfaceEvent event);
 
   std::vector<Surface> surfaces_;
   std::optional<std::size_t> present_;

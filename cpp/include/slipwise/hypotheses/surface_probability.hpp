@@ -2,10 +2,12 @@
 // How probable each surface is to be the one under the robot.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "slipwise/hypotheses/surface_bank.hpp"
+#include "slipwise/hypotheses/surface_list.hpp"
+#include "slipwise/hypotheses/surface_trial.hpp"
 
 namespace slipwise {
 
@@ -14,8 +16,8 @@ struct SurfaceProbability {
   double probability;
 };
 
-/// Of the candidates of its trial, those without a name together; of the present surface, where there is no trial.
-/// Nothing where none are remembered.
-std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank);
+/// Of the candidates of a trial, those without a name together; of the present surface, where there is no trial.
+std::vector<SurfaceProbability> surface_probabilities(const SurfaceList& surfaces,
+                                                      const std::optional<SurfaceTrial>& trial);
 
 }  // namespace slipwise
