@@ -72,8 +72,11 @@ def test_logs_are_pooled_and_a_model_of_one_of_them_is_said_to_be(
     slipwise: Slipwise, folder: Path, drive_csv: Path, models: tuple[Path, Path]
 ) -> None:
     """Segments of two logs count together; one cannot be compared on what it learned without a word."""
-    again = folder / "again.csv"
-    again.write_bytes(drive_csv.read_bytes() + b"\n")
+    again, (head, *lines) = folder / "again.csv", drive_csv.read_text().splitlines()
+    assert head.startswith("t,")
+    cells = (line.partition(",") for line in lines)
+    later = [f"{float(t) + 1000.0:.6f},{rest}" for t, _, rest in cells]  # the same drive is refused
+    again.write_text("\n".join((head, *later)) + "\n")
     one = slipwise("compare", *models, drive_csv, "--json", "-").json["predictions"]
     two = slipwise("compare", *models, drive_csv, again, "--json", "-").json["predictions"]
     assert two["windows"] == 2 * one["windows"]
