@@ -56,7 +56,7 @@ class Fit:
         """Return which part of the squares of the rates about their mean comes of the inputs."""
         rates = self.rates_out()
         left = np.square(rates - self.inputs @ self.coefficients()).sum()
-        return float(1.0 - left / np.square(rates - rates.mean()).sum())
+        return float(1.0 - left / max(float(np.square(rates - rates.mean()).sum()), np.finfo(float).tiny))
 
     def scatter(self, number: Callable[[Fit], float]) -> float:
         """Return the standard deviation of a number, by leaving a tenth of the windows out in turn."""

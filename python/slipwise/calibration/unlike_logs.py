@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -78,7 +79,7 @@ def _apart(answers: Mapping[str, Answer], verb: str, inputs: str) -> Finding | N
     if worst is None:
         return None
     file, share, usual = worst
-    times = share.value / usual.value
+    times = share.value / usual.value if usual.value != 0.0 else math.inf
     return _found(
         f"the log {file} {verb} {_percent(share)} % of {inputs}, others {_percent(usual)} %",
         times,

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from contradictory_logs import SKID_STEERED, scaled, sound_log, with_runs
 
@@ -69,6 +70,17 @@ def test_the_file_that_is_otherwise_is_named(change: Callable[[Log], Log], spoil
     (found,) = found_in(together(change))
     assert (found.kind, found.spoils, found.reserves) == (KIND, spoils, not spoils)
     assert what in found.sentence
+
+
+def test_files_in_which_nothing_turns_or_moves_divide_by_nothing() -> None:
+    def stands(run: Run) -> Run:
+        still = np.zeros(len(run.poses))
+        return replace(run, poses=replace(run.poses, x=still, y=still, yaw=still))
+
+    log = together(lambda log: log)
+    others = tuple(stands(run) for run in log.runs[:2])
+    (found,) = found_in(replace(log, runs=(*others, log.runs[2])))
+    assert (found.spoils, "d2.csv drives" in found.sentence) == (True, True)
 
 
 def test_a_verdict_says_it() -> None:

@@ -45,8 +45,8 @@ class SidewaysSpeed(Check):
         ahead, left = ways.explained
         if ahead < _EXPLAINED:
             return None
-        crossed = ways.crossed
-        if ways.sideways and crossed > _EXPLAINED:
+        crossed = ways.crossed if ways.sideways else 0.0
+        if crossed > _EXPLAINED:
             name = seen.words.name
             return self.found(
                 f"the poses move to the left as the {name} turn, and turn as these move to the left",
@@ -133,7 +133,7 @@ class _Ways:
         """
         gains = np.column_stack((self.gains[1:, 1], robust_fit(self.given, self.turned)[0][1:]))
         wanted = _sizes(np.column_stack((self.moved[:, 1], self.turned)))
-        parts = np.abs(gains) * np.divide.outer(_sizes(self.given[:, 1:]), wanted)
+        parts = np.abs(gains) * np.divide.outer(_sizes(self.given[:, 1:]), np.maximum(wanted, 1e-12))
         return float(min(parts[1, 0], parts[0, 1])) if max(parts[0, 0], parts[1, 1]) < _NOT_EXPLAINED else 0.0
 
     @property
