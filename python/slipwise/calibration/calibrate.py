@@ -163,8 +163,7 @@ def found_contradictions(
     )
     unknown_after = settings.segment.unknown_after
     first = findings_in(seen)
-    place = settings.sensor_extrinsics
-    sensor = PoseSensor(place.y, place.yaw, seen.positions)
+    sensor = PoseSensor(*seen.sensor[1:], seen.positions)
     together = () if seen.commanded.throttle else unlike_logs(evidence.windows, runs, input_name, sensor)
     return (
         *first,

@@ -87,7 +87,7 @@ class Windows:
     def seconds(self) -> float:
         """Return how much driving they hold."""
         ends = np.cumsum(self.counts)
-        return float((self.t[ends - 1] - self.t[ends - self.counts]).sum())
+        return float((self.t[ends - 1] - self.begins()).sum())
 
     def sums(self, rows: NDArray[_Number]) -> NDArray[_Number]:
         """Return sums over each window, [..., W] of [..., N]."""

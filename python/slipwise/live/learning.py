@@ -24,10 +24,6 @@ AGREE_AGAIN = 80  # stretches of 1.5 s of driving without a contradiction end it
 AFTER_CHANGE = 60.0  # s after a change of terrain in which judgements are frequent all the same
 
 
-def _no_mounts(_last: bool, /) -> tuple[Mount, ...]:  # as a callback it has no names
-    return ()
-
-
 class Learning:
     """The learner with its judgements.
 
@@ -47,7 +43,7 @@ class Learning:
         self.nis: float | None = None
         self.segments = 0
         self.of_stream: Callable[[], tuple[Finding, ...]] = tuple  # what the learner does not keep
-        self.mounts: Callable[[bool], tuple[Mount, ...]] = _no_mounts  # the same; whether nothing more comes
+        self.mounts: Callable[[bool], tuple[Mount, ...]] = lambda _: ()  # asked whether nothing more comes
         self._said = said
         self._new = False  # whether something was learned since the last judgement
         self._compared = learner.compared  # how much of the driving was looked at for contradictions by then

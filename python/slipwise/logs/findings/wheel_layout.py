@@ -281,9 +281,7 @@ def _of_all(read: _Read) -> Iterator[_Mistake]:
 
 def _of_size(read: _Read) -> Iterator[_Mistake]:
     """Yield wheels of another size, whose speeds go with the others' by a factor."""
-    for place, name in enumerate(read.names.speeds):
-        if name is None:
-            continue
+    for place, name in _driven(read).items():
         squares = [float(np.sum(read.with_readings([name], k).twists().squares)) for k in (0.0, 1.0, 2.0)]
         bend = squares[0] - 2.0 * squares[1] + squares[2]  # they are a parabola of the factor
         if not bend > 0.0:
@@ -328,9 +326,9 @@ def _left_out(read: _Read) -> Iterator[_Mistake]:
             yield _Mistake(f"nothing that {wheels[place].name} says is read", others)
 
 
-def _driven(read: _Read) -> list[int]:
-    """Return the places of the wheels whose speeds are read."""
-    return [place for place, name in enumerate(read.names.speeds) if name is not None]
+def _driven(read: _Read) -> dict[int, str]:
+    """Return the names of the speeds that are read, by the places of their wheels."""
+    return {place: name for place, name in enumerate(read.names.speeds) if name is not None}
 
 
 def _rigid(wheel: WheelDescription) -> bool:
@@ -364,12 +362,13 @@ def _still_hinge(read: _Read) -> Finding | None:
 
 
 def _still_wheel(read: _Read) -> Finding | None:
-    speeds = [name for name in read.names.speeds if name is not None]
+    speeds = _driven(read).values()
     for name in speeds if len(speeds) > _FEW_WHEELS else ():
         others = np.array([read.readings[other] for other in speeds if other != name])
-        for mine, seconds in _still(read, name, np.any(others != 0.0, axis=0, keepdims=False)):
+        spread = float(np.cov(others).trace())
+        for mine, seconds in _still(read, name, np.abs(others).sum(axis=0) > 0.0):
             along, across = np.linalg.eigvalsh(np.cov(others[:, mine]))[:-3:-1].tolist()
-            if across > _SIDES * along and along > _VARIES**2 * np.cov(others).trace():
+            if across > _SIDES * along and along > _VARIES**2 * spread:
                 return StillWheel.found(
                     f"{name} stays at {read.readings[name][mine[0]]:.3g} rad/s for {seconds:.0f} s in which "
                     "the other wheels turn this way and that",
