@@ -137,7 +137,18 @@ void bind_learner_results(nb::module_& m) {
       .def_ro("segments", &LearnedModel::segments)
       .def_ro("rejected", &LearnedModel::rejected)
       .def_ro("car", &LearnedModel::car)
-      .def_ro("evidence", &LearnedModel::evidence);
+      .def_ro("evidence", &LearnedModel::evidence)
+      .def(
+          "predicted_again",
+          [](const LearnedModel& model, std::size_t horizon, const ActuatorLimits* limits) {
+            if (limits != nullptr && limits->posterior) {
+              return model.targets.predicted_by(*limits->posterior, limits->search.drive.limits, horizon);
+            }
+            return model.targets.predicted_by(*model.known.motion, {}, horizon);
+          },
+          "horizon"_a, "limits"_a.none(),
+          "Poses [N, 3] that the model, behind limits where they were kept, predicts of the last targets of a "
+          "horizon.");
 }
 
 void bind_events(nb::module_& m) {

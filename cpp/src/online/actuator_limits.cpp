@@ -143,6 +143,10 @@ std::optional<ActuatorLimits> find_actuator_limits(const LimitData& data) {
   }
   MotionPosterior posterior = with_actuator(data.cascaded, learned_actuator(data.wheels, data.filter, &limits));
   posterior.structure = Structure::Limited;
+  // What was compared had learned the first half: of all, another answer of the drive may have come out.
+  if (gain_behind(data.segments, {.without = data.kept, .with = posterior, .limits = limits, .noise = noise}) <= 0.0) {
+    return result;
+  }
   PredictiveScore score(noise);
   for (const DrivenSegment& segment : data.segments) {
     const DrivenSegment limited = behind(segment, limits);

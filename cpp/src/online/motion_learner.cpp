@@ -267,7 +267,8 @@ LearnedModel MotionLearner::model() const {
                        .segments = learner.hypotheses().count(),
                        .rejected = learner.log().rejected(),
                        .car = stream.drive().car_curves(),
-                       .evidence = stream.evidence()};
+                       .evidence = stream.evidence(),
+                       .targets = learner.targets()};
   learned.known.until = clock().stamp(learned.known.until);
   const double spacing = stream.wheel_interval();
   learned.known.motion = supported(learned.known.motion, spacing, learned.segments);

@@ -8,7 +8,7 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kMemory = 1000;  // poses: a minute of 20 Hz is not yet the nominal
+constexpr std::size_t kCounted = 1000;  // poses: a minute of 20 Hz is not yet the nominal
 const double kMostRatio = std::log(1e3);
 
 }  // namespace
@@ -22,7 +22,7 @@ double NominalStd::ratio(double std) {
     log_mean_ = log_std;
   }
   const double above = std::clamp(log_std - log_mean_, -kMostRatio, kMostRatio);
-  count_ = std::min(count_ + 1, kMemory);
+  count_ = std::min(count_ + 1, kCounted);
   log_mean_ += above / static_cast<double>(count_);
   return std::exp(above);
 }

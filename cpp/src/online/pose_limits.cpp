@@ -79,7 +79,11 @@ std::optional<ActuatorLimits> find_pose_limits(const PoseLimitData& data) {
       gain_behind(later, {.without = data.kept, .with = *with, .limits = limits, .noise = noise}) > 0.0) {
     MotionPosterior posterior = *learned(data.segments, joint, &limits);
     posterior.structure = Structure::Limited;
-    result.posterior = std::make_shared<const MotionPosterior>(std::move(posterior));
+    // What was compared had learned the first half: of all, another answer of the drive may have come out.
+    const LimitContest all{.without = data.kept, .with = posterior, .limits = limits, .noise = noise};
+    if (gain_behind(data.segments, all) > 0.0) {
+      result.posterior = std::make_shared<const MotionPosterior>(std::move(posterior));
+    }
   }
   return result;
 }

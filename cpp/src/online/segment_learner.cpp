@@ -74,6 +74,7 @@ SegmentLearner::SegmentLearner(const LearnerSettings& settings)
       hypotheses_(settings.hypotheses),
       disturbance_(disturbance_of(settings)),
       errors_(settings.stream.horizons),
+      targets_(settings.stream.horizons.size()),
       sources_(settings.stream, settings.hypotheses.filter) {
   known_ = RecentKnowledge(now_known(-kNever), settings.learn_disturbance, kRecent * settings.stream.segment_length,
                            longest_back(settings.stream));
@@ -175,11 +176,14 @@ bool SegmentLearner::learn_front(const SegmentStream& stream) {
               }
               return more;
             },
-            [&](const TargetSegment& target) {
+            [&](TargetSegment& target) {
               const auto prediction =
                   std::make_shared<const HeldOutPrediction>(judged(target, settings_, known_, errors_, log_));
               errors_.keep(prediction);
               log_.say({.kind = LearnerEvent::Kind::HeldOut, .t = target.driven.segment.end, .prediction = prediction});
+              if (!settings_.stream.car) {
+                targets_.keep(target.horizon, std::move(target.driven));
+              }
               return false;
             },
             [](const SourceSegment& /*of another source*/) { return false; },
@@ -358,6 +362,7 @@ void SegmentLearner::check_loaded(const SegmentLearner& made) const {
   sources_.check_loaded(made.sources_);
   known_.check_loaded(made.known_);
   errors_.check_loaded(settings_.stream.horizons);
+  targets_.check_loaded(made.targets_);
   const std::size_t horizons = settings_.stream.horizons.size();
   const std::size_t classes = kPoseFixes * std::max<std::size_t>(1, settings_.stream.sources.size());
   const auto are_known = [&](const std::array<std::size_t, 2>& each) { return each[0] < classes && each[1] < classes; };

@@ -16,7 +16,7 @@
 namespace slipwise {
 namespace {
 
-constexpr double kStep = 0.01;  // [s, m] of the differences that stand for derivatives
+constexpr double kDifference = 0.01;  // [s, m] of the differences that stand for derivatives
 constexpr Eigen::Index kStates = 4;
 SLIPWISE_TUNING(kClockDrift, 2e-3);  // [s] per segment: what was learned while the model knew little is forgotten
 SLIPWISE_TUNING(kPlaceDrift, 4e-3);  // [m, rad] the same
@@ -43,9 +43,9 @@ struct SourceCalibration::Seen {
     const SegmentPath here = path(state);
     const std::vector<slipwise::Seen> seen = here.seen();
     At found{.predicted = stacked(seen), .jacobian = {}};
-    const Eigen::VectorXd later = kStep * Eigen::VectorXd::Unit(kStates, 0);
+    const Eigen::VectorXd later = kDifference * Eigen::VectorXd::Unit(kStates, 0);
     found.jacobian.resize(found.predicted.size(), kStates);
-    found.jacobian.col(0) = (path(state + later).rows() - path(state - later).rows()) / (2.0 * kStep);
+    found.jacobian.col(0) = (path(state + later).rows() - path(state - later).rows()) / (2.0 * kDifference);
     Eigen::Index row = 0;
     for (const slipwise::Seen& each : seen) {
       found.jacobian.middleRows(row, each.z.size()).rightCols<3>() = each.by_place;

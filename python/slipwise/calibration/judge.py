@@ -9,8 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.handed_on import handed_on
 from slipwise.calibration.judgement import Judgement, judgement_of
 from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import Posterior
@@ -39,6 +41,7 @@ class ToJudge:
     known: Identified
     limits: tuple[str, ...]  # advice on limits of the actuator
     horizons: tuple[Predictions, ...]  # the model's at all horizons
+    again: NDArray[np.float64] | None = None  # errors of the model that is handed on, see `Learned`
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +64,10 @@ class Sensors:
 def judge(learned: ToJudge, facts: LogFacts) -> Judged:
     """Judge what was learned, knowing what the measurements say of themselves."""
     judgement = judgement_of(learned.predictions, learned.baseline, learned.horizons)
+    if learned.again is not None:
+        judgement = replace(
+            judgement, handed_on=handed_on(learned.predictions, learned.baseline, learned.again)
+        )
     verdict = give_verdict(judgement, learned.known, facts)
     if not verdict.contradictions:
         verdict = replace(verdict, advice=tuple(dict.fromkeys((*verdict.advice, *learned.limits))))
@@ -88,7 +95,14 @@ def to_judge(learned: Learned, settings: Settings, sensors: Sensors, *, position
     kept = learned.kept.limits is not None
     limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=sensors.wheels)
     judged = learned.judged
-    return ToJudge(learned.predictions[judged], learned.baseline[judged], known, limits, learned.predictions)
+    return ToJudge(
+        learned.predictions[judged],
+        learned.baseline[judged],
+        known,
+        limits,
+        learned.predictions,
+        learned.again,
+    )
 
 
 def advice_on_limits(search: _core.LimitSearch | None, *, kept: bool, wheels_logged: bool) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipwise.calibration.consistency import Consistency, consistency_of
+from slipwise.calibration.handed_on import HandedOn
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.statistics import held_out_half, ratio_of_means
 from slipwise.models.schema import HeldOut
@@ -52,6 +53,7 @@ class Judgement:
     still: Still | None  # None where nothing moved
     consistency: Consistency | None = None
     commanded: tuple[float, float] = (0.0, 0.0)  # m and rad in a segment, by the inputs
+    handed_on: HandedOn | None = None  # the model as it is at the end, of one that learned on the way
 
     @property
     def hidden(self) -> dict[str, float]:

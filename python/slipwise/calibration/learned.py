@@ -6,6 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from slipwise import _core
 from slipwise.calibration.judgement import FEWEST_WINDOWS
 from slipwise.calibration.learner import Posterior
@@ -31,6 +34,7 @@ class Learned:
     sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
     body: schema.MeasuredBody | None = None  # what the poses show of its rates
     evidence: _core.MotionEvidence | None = None  # of contradictions, where a learner took the measurements
+    again: NDArray[np.float64] | None = None  # errors of what is kept over the last segments judged, [N, 2]
 
     @property
     def judged(self) -> int:

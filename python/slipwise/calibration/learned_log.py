@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.calibration.coming import coming_of_runs
 from slipwise.calibration.core_settings import core_settings
-from slipwise.calibration.learned import Learned
+from slipwise.calibration.learned import Learned, judged_horizon
 from slipwise.calibration.learner import LIMITS, STRUCTURES, Posterior, Progress, posterior_of
 from slipwise.calibration.predictions import Predictions, residual
 from slipwise.calibration.predictors import student_of
@@ -183,7 +183,18 @@ def learned_now(
         sources=sources,
         body=measured_body(model),
         evidence=model.evidence,
+        again=_again(model, found, predictions),
     )
+
+
+def _again(
+    model: _core.LearnedModel, found: _core.ActuatorLimits | None, predictions: tuple[Predictions, ...]
+) -> Floats:
+    """Errors over the last segments of the horizon that is judged, by the model that is kept, [N, 2]."""
+    judged = judged_horizon([len(each) for each in predictions])
+    poses = model.predicted_again(judged, found)
+    measured = predictions[judged].measured
+    return _errors(measured[len(measured) - len(poses) :], poses)
 
 
 def found_limits(

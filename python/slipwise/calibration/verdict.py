@@ -102,6 +102,7 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
         or _unexplained(judgement, facts)
         or _not_better(judgement)
         or _untrue(judgement)
+        or _stopped(judgement, facts)
         or _too_late(known, facts)
         or _uphill(known)
     )
@@ -173,6 +174,12 @@ def _untrue(judgement: Judgement) -> str:
     return f"{_REFUSED} its uncertainty is not that of its errors."
 
 
+def _stopped(judgement: Judgement, facts: LogFacts) -> str:
+    kept = judgement.handed_on
+    fault = kept.fault({each.kind for each in facts.contradictions}) if kept is not None else ""
+    return f"{_REFUSED} {fault}." if fault else ""
+
+
 def _too_late(known: Identified, facts: LogFacts) -> str:
     if known.delay <= LATEST or facts.clocks_compared:
         return ""
@@ -199,7 +206,9 @@ def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
     honest = "" if judgement.consistency is None else judgement.consistency.sentence()
     courses = POSITIONS_ONLY if facts.positions else ""
     turns = YAW_RATES_ONLY if judgement.held_out.turns_alone else ""
-    return tuple(sentence for sentence in (*larger, honest, *partly, courses, turns) if sentence)
+    kept = judgement.handed_on
+    unlike = "" if kept is None or _stopped(judgement, facts) else kept.sentence()
+    return tuple(sentence for sentence in (*larger, honest, unlike, *partly, courses, turns) if sentence)
 
 
 def _figures(held_out: HeldOut) -> str:
@@ -250,6 +259,8 @@ def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         advice.append(_more_or_none(judgement, facts.input_name))
     if judgement.consistency is not None:
         advice += judgement.consistency.advice()
+    if judgement.handed_on is not None and not _stopped(judgement, facts):
+        advice += judgement.handed_on.advice()
     return tuple(advice)
 
 

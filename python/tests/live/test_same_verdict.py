@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from contradictory_logs import sound_log, stopped, turned
+from contradictory_logs import SKID_STEERED, sound_log, stopped, turned
 
 import slipwise as sw
 from slipwise.calibration import make_settings
@@ -63,7 +64,12 @@ def differences(paths: list[Path], *, basis: str = "auto") -> dict[str, str]:
     return found
 
 
-@pytest.mark.parametrize("log", [sound_log(), turned(sound_log(), 1.57), stopped(sound_log(), 30.0)])
+LATE = stopped(
+    sound_log(replace(SKID_STEERED, seconds=150.0)), 132.0, 0.002
+)  # not good, as it was learned last
+
+
+@pytest.mark.parametrize("log", [sound_log(), turned(sound_log(), 1.57), stopped(sound_log(), 30.0), LATE])
 def test_a_live_verdict_is_that_of_calibrate(log: Log) -> None:
     assert difference(log, "wheel", "edd-2") == ""
 

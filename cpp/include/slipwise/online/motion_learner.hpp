@@ -53,8 +53,9 @@ struct LearnedModel {
   double seconds;                            ///< of all segments learned
   std::size_t segments;
   RejectionCounts rejected;
-  std::optional<CarCurves> car = {};  ///< where commands are throttle and steering
-  MotionEvidence evidence = {};       ///< whether poses and inputs contradict each other
+  std::optional<CarCurves> car = {};        ///< where commands are throttle and steering
+  MotionEvidence evidence = {};             ///< whether poses and inputs contradict each other
+  JudgedTargets targets = JudgedTargets();  ///< what was judged of late
 };
 
 /// Streams must be in order each; they may be late relative to each other by the latency of the settings. No push

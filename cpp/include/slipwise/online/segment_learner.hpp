@@ -11,6 +11,7 @@
 
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 #include "slipwise/online/held_out.hpp"
+#include "slipwise/online/judged_targets.hpp"
 #include "slipwise/online/known_sources.hpp"
 #include "slipwise/online/learner_log.hpp"
 #include "slipwise/online/learner_settings.hpp"
@@ -67,6 +68,8 @@ class SegmentLearner {
   const MotionHypotheses& hypotheses() const { return hypotheses_; }
   const KnownSources& sources() const { return sources_; }
   const HeldOutErrors& errors() const { return errors_; }
+  /// What was judged of late; nothing of a car, whose curves make its inputs.
+  const JudgedTargets& targets() const { return targets_; }
   LearnerLog& log() { return log_; }
   const LearnerLog& log() const { return log_; }
   const LearnerSettings& settings() const { return settings_; }
@@ -80,7 +83,7 @@ class SegmentLearner {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.settings_, self.hypotheses_, self.disturbance_, self.waiting_, self.started_, self.known_, self.limits_);
-    a(self.errors_, self.log_, self.seconds_, self.sources_);
+    a(self.errors_, self.log_, self.seconds_, self.sources_, self.targets_);
   }
 
  private:
@@ -103,6 +106,7 @@ class SegmentLearner {
   RecentKnowledge known_;
   LimitEvidence limits_;
   HeldOutErrors errors_;
+  JudgedTargets targets_;
   LearnerLog log_;
   double seconds_ = 0.0;
   KnownSources sources_;  ///< where there are several, or fixes

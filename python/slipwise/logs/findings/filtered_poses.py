@@ -10,7 +10,7 @@ wheels say that arrives, its pose and the wheels differ by (g - 1) times what th
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from slipwise.logs.findings.driven_steps import (
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.pose_streams import told_by
 from slipwise.logs.findings.seen import WORDS, WholeLog
+from slipwise.logs.findings.standstill import TURN_ARM
 from slipwise.logs.log import has_course
 
 _ENOUGH = 30  # windows of 1 s,
@@ -39,6 +40,8 @@ _CORRECTED = (0.7, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 22.0)  # [s] time constan
 _QUICK = 1  # first of them that are not tried against commands, which a drive may follow so slowly
 _LAGS_OF_DRIVES = (0.0, 0.2, 0.5)  # [s] of a robot that follows commands
 _DELAYS = (0.0, 0.2, 0.4)  # [s] by which poses are late
+_STANDS = (0.05, 0.1)  # [m] by the inputs, and the part of it that poses move less than,
+_STOOD = 3  # windows in a row: the robot stands
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,8 @@ class FilteredPoses(Check):
     def look_at(self, whole: WholeLog) -> Finding | None:
         """Compare turns, and where there are wheels ways, with those of bodies and of such filters."""
         name = told_by(whole)
-        drives = [each for each in driven_steps(whole, name) if each.chosen.any()]
+        drives = [_moving(each) for each in driven_steps(whole, name)]
+        drives = [each for each in drives if each.chosen.any()]
         if sum(int(each.chosen.sum()) for each in drives) < _ENOUGH:
             return None
         course = has_course(whole.log.runs)
@@ -149,6 +153,18 @@ class _Motion:
     def _said(self) -> Numbers:
         rows = [each.between((steps,)) for each, steps in zip(self.drives, self.steps, strict=True)]
         return np.asarray(np.concatenate(rows)[:, 0])
+
+
+def _moving(drive: DrivenSteps) -> DrivenSteps:
+    """Leave out stretches in which the robot stands although it is driven: poses of a filter would move."""
+    every = replace(drive, chosen=np.ones_like(drive.chosen))
+    way, turn = np.abs(every.between((np.hypot(drive.forward, drive.sideways), np.abs(drive.rotation)))).T
+    by_inputs, by_poses = way + TURN_ARM * turn, np.abs(drive.way) + TURN_ARM * np.abs(drive.turn)
+    still = (by_inputs > _STANDS[0]) & (by_poses < _STANDS[1] * by_inputs)
+    stood = np.zeros_like(still)
+    for k in range(len(still) - _STOOD + 1):
+        stood[k : k + _STOOD] |= still[k : k + _STOOD].all()
+    return replace(drive, chosen=drive.chosen & ~stood)
 
 
 def _ways_along(drive: DrivenSteps, lag: float) -> Sequence[Numbers]:
