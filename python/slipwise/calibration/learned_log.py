@@ -189,8 +189,10 @@ def learned_now(
 
 def _again(
     model: _core.LearnedModel, found: _core.ActuatorLimits | None, predictions: tuple[Predictions, ...]
-) -> Floats:
+) -> Floats | None:
     """Errors over the last segments of the horizon that is judged, by the model that is kept, [N, 2]."""
+    if not predictions:
+        return None
     judged = judged_horizon([len(each) for each in predictions])
     poses = model.predicted_again(judged, found)
     measured = predictions[judged].measured
