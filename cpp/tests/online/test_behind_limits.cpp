@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "online/kinematic_baseline.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 using slipwise::CommandLimits;
@@ -36,14 +37,6 @@ std::vector<DrivenSegment> segments(int count) {
   return all;
 }
 
-MotionPosterior baseline() {
-  return {.model = {},
-          .estimate = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)},
-          .prior_std = Eigen::VectorXd(0),
-          .noise = {},
-          .noise_scale = Eigen::Vector3d::Ones()};
-}
-
 }  // namespace
 
 TEST_CASE("behind a limit a segment is driven by what comes through") {
@@ -53,7 +46,7 @@ TEST_CASE("behind a limit a segment is driven by what comes through") {
 }
 
 TEST_CASE("limits that act gain, and limits that do not lose nothing") {
-  const MotionPosterior same = baseline();
+  const MotionPosterior same = kinematic_baseline();
   const NoiseSettings noise;
   const CommandLimits free;
   const CommandLimits limits = limited();

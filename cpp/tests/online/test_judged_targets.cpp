@@ -5,25 +5,18 @@
 
 #include <stdexcept>
 
+#include "online/kinematic_baseline.hpp"
+
 using slipwise::CommandLimits;
 using slipwise::DrivenSegment;
 using slipwise::InputHistory;
 using slipwise::JudgedTargets;
-using slipwise::MotionPosterior;
 
 namespace {
 
 /// 1 s at so many m/s.
 DrivenSegment driven(double speed) {
   return {.inputs = InputHistory({0.0}, {{.v = speed}}), .segment = {.start = 0.0, .end = 1.0}};
-}
-
-MotionPosterior baseline() {
-  return {.model = {},
-          .estimate = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)},
-          .prior_std = Eigen::VectorXd(0),
-          .noise = {},
-          .noise_scale = Eigen::Vector3d::Ones()};
 }
 
 }  // namespace
@@ -35,15 +28,15 @@ TEST_CASE("the last targets of a horizon are predicted again, the oldest first, 
     targets.keep(1, driven(0.01 * static_cast<double>(i)));
   }
   const JudgedTargets copy = targets;
-  const auto poses = copy.predicted_by(baseline(), {}, 1);
+  const auto poses = copy.predicted_by(kinematic_baseline(), {}, 1);
   REQUIRE(poses.rows() == count);
   CHECK(poses(0, 0) == doctest::Approx(0.03));
   CHECK(poses(count - 1, 0) == doctest::Approx(0.01 * static_cast<double>(count + 2)));
   CommandLimits limits;
   limits.speed.saturation = 0.3;
-  CHECK(copy.predicted_by(baseline(), limits, 1).col(0).maxCoeff() == doctest::Approx(0.3));
-  CHECK(copy.predicted_by(baseline(), {}, 0).rows() == 0);
-  CHECK_THROWS_AS(copy.predicted_by(baseline(), {}, 2), std::out_of_range);
+  CHECK(copy.predicted_by(kinematic_baseline(), limits, 1).col(0).maxCoeff() == doctest::Approx(0.3));
+  CHECK(copy.predicted_by(kinematic_baseline(), {}, 0).rows() == 0);
+  CHECK_THROWS_AS(copy.predicted_by(kinematic_baseline(), {}, 2), std::out_of_range);
 }
 
 TEST_CASE("targets of other horizons are refused") {
