@@ -16,7 +16,7 @@ from typing import NoReturn
 import rclpy
 from geometry_msgs.msg import PoseStamped
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from slipwise_msgs.srv import PredictPath
@@ -156,8 +156,11 @@ def main() -> None:
     """Run the node until it is interrupted."""
     rclpy.init()
     node = SlipwiseNode()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
     try:
-        rclpy.spin(node)
+        while rclpy.ok():  # each second: an interrupt just before a wait does not end it
+            executor.spin_once(timeout_sec=1.0)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except Exception:
