@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from slipwise.calibration.identifiability import (
     Confounded,
@@ -96,16 +96,19 @@ def identified(
 def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Verdict:
     """Put a judgement into words: the fault that weighs most, the figures, and what to do."""
     contradicted = tuple(each for each in facts.contradictions if each.spoils)
+    stopped = _stopped(judgement, facts)
     fault = (
         _contradicted(contradicted)
         or _not_judged(judgement)
         or _unexplained(judgement, facts)
         or _not_better(judgement)
         or _untrue(judgement)
-        or _stopped(judgement, facts)
+        or stopped
         or _too_late(known, facts)
         or _uphill(known)
     )
+    if stopped:  # which says all of it
+        judgement = replace(judgement, handed_on=None)
     reservations = _reservations(judgement, facts)
     if known.delay > LATEST and facts.clocks_compared:
         reservations = (*reservations, f"It answers after {known.delay:.2g} s, which no drive needs.")
@@ -206,8 +209,7 @@ def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
     honest = "" if judgement.consistency is None else judgement.consistency.sentence()
     courses = POSITIONS_ONLY if facts.positions else ""
     turns = YAW_RATES_ONLY if judgement.held_out.turns_alone else ""
-    kept = judgement.handed_on
-    unlike = "" if kept is None or _stopped(judgement, facts) else kept.sentence()
+    unlike = "" if judgement.handed_on is None else judgement.handed_on.sentence()
     return tuple(sentence for sentence in (*larger, honest, unlike, *partly, courses, turns) if sentence)
 
 
@@ -259,7 +261,7 @@ def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         advice.append(_more_or_none(judgement, facts.input_name))
     if judgement.consistency is not None:
         advice += judgement.consistency.advice()
-    if judgement.handed_on is not None and not _stopped(judgement, facts):
+    if judgement.handed_on is not None:
         advice += judgement.handed_on.advice()
     return tuple(advice)
 

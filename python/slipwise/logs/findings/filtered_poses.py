@@ -27,7 +27,7 @@ from slipwise.logs.findings.driven_steps import (
 from slipwise.logs.findings.finding import Check, Finding
 from slipwise.logs.findings.pose_streams import told_by
 from slipwise.logs.findings.seen import WORDS, WholeLog
-from slipwise.logs.findings.standstill import TURN_ARM
+from slipwise.logs.findings.standstill import LEAST, STILL, arm_motion
 from slipwise.logs.log import has_course
 
 _ENOUGH = 30  # windows of 1 s,
@@ -40,8 +40,7 @@ _CORRECTED = (0.7, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 22.0)  # [s] time constan
 _QUICK = 1  # first of them that are not tried against commands, which a drive may follow so slowly
 _LAGS_OF_DRIVES = (0.0, 0.2, 0.5)  # [s] of a robot that follows commands
 _DELAYS = (0.0, 0.2, 0.4)  # [s] by which poses are late
-_STANDS = (0.05, 0.1)  # [m] by the inputs, and the part of it that poses move less than,
-_STOOD = 3  # windows in a row: the robot stands
+_STOOD = 3  # windows in a row without motion: the robot stands
 
 
 @dataclass(frozen=True)
@@ -158,9 +157,9 @@ class _Motion:
 def _moving(drive: DrivenSteps) -> DrivenSteps:
     """Leave out stretches in which the robot stands although it is driven: poses of a filter would move."""
     every = replace(drive, chosen=np.ones_like(drive.chosen))
-    way, turn = np.abs(every.between((np.hypot(drive.forward, drive.sideways), np.abs(drive.rotation)))).T
-    by_inputs, by_poses = way + TURN_ARM * turn, np.abs(drive.way) + TURN_ARM * np.abs(drive.turn)
-    still = (by_inputs > _STANDS[0]) & (by_poses < _STANDS[1] * by_inputs)
+    way, turn = every.between((np.hypot(drive.forward, drive.sideways), np.abs(drive.rotation))).T
+    by_inputs, by_poses = arm_motion(way, turn), arm_motion(np.abs(drive.way), drive.turn)
+    still = (by_inputs > LEAST) & (by_poses < STILL * by_inputs)
     stood = np.zeros_like(still)
     for k in range(len(still) - _STOOD + 1):
         stood[k : k + _STOOD] |= still[k : k + _STOOD].all()

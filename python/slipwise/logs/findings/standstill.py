@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from slipwise.logs.findings.seen import Seen
 
 TURN_ARM = 0.3  # [m] at which a turn counts as distance
-_LEAST = 0.05  # [m] by the inputs in a window; slower driving may be inside a dead band
+LEAST = 0.05  # [m] by the inputs in a window; slower driving may be inside a dead band
 _PART = 0.3  # of the motion in fast windows, by the inputs; the same for robots that are slow on the whole
-_STILL = 0.1  # of the motion by the inputs; robots that skid or answer late move further
+STILL = 0.1  # of the motion by the inputs; robots that skid or answer late move further
 _STRETCH = 2.0  # [s] without a window ends a stretch
 _SHORTEST = 2.5  # [s] a late answer may last for a shorter stretch
 _SAID = 6.0  # [s] a stretch as long as this is said
@@ -84,14 +84,15 @@ def _places(stretches: tuple[Stretch, ...], runs: Sequence[str]) -> str:
 
 def _driven_and_still(windows: MotionWindows) -> tuple[Bools, Bools]:
     """Say in which windows the robot is driven, and in which of them it does not move, [N] each."""
-    by_inputs = _motion(np.hypot(windows.forward, windows.sideways), windows.rotation)
-    by_poses = _motion(windows.distance, windows.turn)
+    by_inputs = arm_motion(np.hypot(windows.forward, windows.sideways), windows.rotation)
+    by_poses = arm_motion(windows.distance, windows.turn)
     fast = float(np.quantile(by_inputs, 0.9)) if len(windows) else 0.0
-    driven = by_inputs > max(_LEAST, _PART * fast)
-    return driven, driven & (by_poses < _STILL * by_inputs)
+    driven = by_inputs > max(LEAST, _PART * fast)
+    return driven, driven & (by_poses < STILL * by_inputs)
 
 
-def _motion(distance: Floats, turn: Floats) -> Floats:
+def arm_motion(distance: Floats, turn: Floats) -> Floats:
+    """Return how far a robot moves [m], turns [rad] included."""
     return np.asarray(distance + TURN_ARM * np.abs(turn))
 
 
