@@ -28,6 +28,7 @@ _SLOWEST = 0.05  # m/s or rad/s; less is no command to move
 _GOES_ON = 0.5  # of what is commanded beside the zeros, from which on the robot does not obey them
 LOOKED_AT = 40  # newest values
 FEWEST = 8  # times that the courses take turns among these; an outlier is two
+PLACEHOLDERS = 0.25  # of these, at most; so many that are one value to the bit stand for "none measured"
 APART = 5.0  # how many times farther the other course is than the own one, where these are two sources
 CLOSED_FOR = 5.0  # s after two sources were seen last
 
@@ -217,9 +218,16 @@ class SourceWatch:
 
     def _two(self) -> bool:
         """Whether the courses take turns, and each is followed far more closely than the other is near."""
-        if self._turns < FEWEST:
+        if self._turns < FEWEST or self._placeholders():
             return False
         left = [before.other for before, after in itertools.pairwise(self._assigned) if after.turned]
         own = np.array([each.own for each in self._assigned])
         followed = float(np.quantile(own, 0.9)) <= 0.5
         return followed and bool(np.median(left) > max(2.0, APART * float(np.quantile(own, 0.75))))
+
+    def _placeholders(self) -> bool:
+        """Whether the rarer course is one value to the bit: outliers, which are left out, and no source."""
+        on_first = sum(each.first for each in self._assigned)
+        rarer = 2 * on_first <= len(self._assigned)
+        own = [each.own for each in self._assigned if each.first is rarer]
+        return len(own) <= PLACEHOLDERS * LOOKED_AT and not any(own)

@@ -39,6 +39,13 @@ def test_a_second_robot_is_noticed_within_a_second_and_forgotten_after_it_left(e
     assert not later[int((CLOSED_FOR + 3.0) / 0.05)]
 
 
+@pytest.mark.parametrize(("every", "second"), [(20, False), (10, False), (2, True)])
+def test_one_value_that_stands_for_no_pose_is_an_outlier_where_it_is_rare(every: int, second: bool) -> None:
+    watch = SourceWatch(FAR)
+    rows = [(-1.0, -1.0) if k % every == 0 else (5.0 + 0.01 * k, 0.0) for k in range(400)]
+    assert any(watch.take(0.05 * k, row) for k, row in enumerate(rows)) == second
+
+
 def test_wheel_speeds_with_much_noise_are_one_source() -> None:
     rng, watch = np.random.default_rng(4), SourceWatch((0.25, 0.25, 0.5), relative=0.1)
     noisy = (60.0 + 5.0 * np.sin(0.01 * k) + 0.4 * rng.standard_normal() for k in range(5000))
