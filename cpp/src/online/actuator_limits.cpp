@@ -133,27 +133,20 @@ std::optional<ActuatorLimits> find_actuator_limits(const LimitData& data) {
   const auto without = with_actuator(data.cascaded, learned_actuator(first, data.filter, nullptr));
   const auto with = with_actuator(data.cascaded, learned_actuator(first, data.filter, &limits));
   const NoiseSettings& noise = data.filter.noise;
-  result.score = gain_behind(later, {.without = without, .with = with, .limits = limits, .noise = noise});
-  // Another structure has learned these segments, which is hard to beat: it need not be beaten clearly.
-  const bool best = data.kept.structure == Structure::Cascaded ||
-                    (is_clear(result.score, later) &&
-                     gain_behind(later, {.without = data.kept, .with = with, .limits = limits, .noise = noise}) > 0.0);
-  if (!is_clear(result.score, later) || !best) {
+  const LimitContest halves{.without = without, .with = with, .limits = limits, .noise = noise};
+  result.score = gain_behind(later, halves);
+  if (!pays(result.score, later, halves, data.kept)) {
     return result;
   }
   MotionPosterior posterior = with_actuator(data.cascaded, learned_actuator(data.wheels, data.filter, &limits));
-  posterior.structure = Structure::Limited;
-  // What was compared had learned the first half: of all, another answer of the drive may have come out.
-  if (gain_behind(data.segments, {.without = data.kept, .with = posterior, .limits = limits, .noise = noise}) <= 0.0) {
-    return result;
-  }
   PredictiveScore score(noise);
   for (const DrivenSegment& segment : data.segments) {
     const DrivenSegment limited = behind(segment, limits);
     score.score(posterior.model, posterior.estimate, limited.inputs, limited.segment);
   }
   posterior.noise_scale = score.noise_scale();
-  result.posterior = std::make_shared<const MotionPosterior>(std::move(posterior));
+  result.posterior =
+      behind_all(data.segments, {.without = data.kept, .with = posterior, .limits = limits, .noise = noise});
   return result;
 }
 

@@ -4,9 +4,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <iterator>
 #include <numbers>
+#include <utility>
 
 #include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/filter/weighting.hpp"
@@ -43,8 +45,21 @@ double gain_behind(std::span<const DrivenSegment> segments, const LimitContest& 
   return sum;
 }
 
-bool is_clear(double gain, std::span<const DrivenSegment> segments) {
-  return segments.size() >= kFewSegments && gain > kBetter;
+bool pays(double score, std::span<const DrivenSegment> segments, const LimitContest& contest,
+          const MotionPosterior& kept) {
+  const bool clear = segments.size() >= kFewSegments && score > kBetter;
+  const LimitContest with_kept{.without = kept, .with = contest.with, .limits = contest.limits, .noise = contest.noise};
+  return clear && (kept.structure == Structure::Cascaded || gain_behind(segments, with_kept) > 0.0);
+}
+
+std::shared_ptr<const MotionPosterior> behind_all(std::span<const DrivenSegment> segments,
+                                                  const LimitContest& contest) {
+  if (gain_behind(segments, contest) <= 0.0) {
+    return nullptr;
+  }
+  MotionPosterior posterior = contest.with;
+  posterior.structure = Structure::Limited;
+  return std::make_shared<const MotionPosterior>(std::move(posterior));
 }
 
 std::vector<DrivenSegment> segments_since(std::span<const DrivenSegment> segments, double t) {

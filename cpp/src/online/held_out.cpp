@@ -31,13 +31,6 @@ std::vector<const HeldOutPrediction*> pointers(const HeldOutPredictions& predict
 
 }  // namespace
 
-void HeldOutPredictions::keep(std::shared_ptr<const HeldOutPrediction> prediction) {
-  kept_.push_back(std::move(prediction));
-  if (kept_.size() > kMost) {
-    kept_.pop_front();
-  }
-}
-
 HeldOutColumns::HeldOutColumns(const HeldOutPredictions& predictions) : HeldOutColumns(pointers(predictions)) {}
 
 HeldOutColumns::HeldOutColumns(const std::vector<const HeldOutPrediction*>& predictions) {

@@ -2,19 +2,17 @@
 // Segments that were judged are predicted again.
 #include "slipwise/online/judged_targets.hpp"
 
+#include <memory>
 #include <utility>
 
+#include "slipwise/archive/bytes.hpp"
 #include "slipwise/online/behind_limits.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
 
 void JudgedTargets::keep(std::size_t horizon, DrivenSegment driven) {
-  auto& kept = kept_.at(horizon);
-  kept.push_back(std::make_shared<const DrivenSegment>(std::move(driven)));
-  if (kept.size() > kMost) {
-    kept.pop_front();
-  }
+  kept_.at(horizon).keep(std::make_shared<const DrivenSegment>(std::move(driven)));
 }
 
 JudgedTargets::Poses JudgedTargets::predicted_by(const MotionPosterior& known, const CommandLimits& limits,
@@ -22,7 +20,7 @@ JudgedTargets::Poses JudgedTargets::predicted_by(const MotionPosterior& known, c
   const auto& kept = kept_.at(horizon);
   Poses poses(static_cast<Eigen::Index>(kept.size()), 3);
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    const DrivenSegment driven = behind(*kept[i], limits);
+    const DrivenSegment driven = behind(kept[i], limits);
     const SegmentPath path = integrate_segment(known.model, known.estimate.mean, driven.inputs, driven.segment);
     poses.row(static_cast<Eigen::Index>(i)) = chart_of(path.directions(), path.rows());
   }

@@ -73,17 +73,12 @@ std::optional<ActuatorLimits> find_pose_limits(const PoseLimitData& data) {
   const HypothesisSettings joint = joint_alone(data.settings);
   const auto without = learned(first, data.settings, nullptr);
   const auto with = learned(first, joint, &limits);
-  result.score = gain_behind(later, {.without = *without, .with = *with, .limits = limits, .noise = noise});
-  // What is kept has learned these segments, which is hard to beat: it need not be beaten clearly.
-  if (is_clear(result.score, later) &&
-      gain_behind(later, {.without = data.kept, .with = *with, .limits = limits, .noise = noise}) > 0.0) {
-    MotionPosterior posterior = *learned(data.segments, joint, &limits);
-    posterior.structure = Structure::Limited;
-    // What was compared had learned the first half: of all, another answer of the drive may have come out.
-    const LimitContest all{.without = data.kept, .with = posterior, .limits = limits, .noise = noise};
-    if (gain_behind(data.segments, all) > 0.0) {
-      result.posterior = std::make_shared<const MotionPosterior>(std::move(posterior));
-    }
+  const LimitContest halves{.without = *without, .with = *with, .limits = limits, .noise = noise};
+  result.score = gain_behind(later, halves);
+  if (pays(result.score, later, halves, data.kept)) {
+    const auto all = learned(data.segments, joint, &limits);
+    result.posterior =
+        behind_all(data.segments, {.without = data.kept, .with = *all, .limits = limits, .noise = noise});
   }
   return result;
 }

@@ -13,6 +13,7 @@ using slipwise::DrivenSegment;
 using slipwise::InputHistory;
 using slipwise::MotionPosterior;
 using slipwise::NoiseSettings;
+using slipwise::Structure;
 
 namespace {
 
@@ -55,11 +56,32 @@ TEST_CASE("limits that act gain, and limits that do not lose nothing") {
   CHECK(gain_behind(all, {.without = same, .with = same, .limits = free, .noise = noise}) == doctest::Approx(0.0));
 }
 
-TEST_CASE("a gain over few segments, or a little one, is not clear") {
+TEST_CASE("limits pay by a clear gain over many segments, and against what is kept by any, unless it is cascaded") {
+  MotionPosterior kept = kinematic_baseline();
+  const NoiseSettings noise;
+  const CommandLimits free;
+  const CommandLimits limits = limited();
   const auto all = segments(12);
-  CHECK(slipwise::is_clear(3.0, all));
-  CHECK_FALSE(slipwise::is_clear(2.0, all));
-  CHECK_FALSE(slipwise::is_clear(3.0, segments(7)));
+  const auto pay = [&](double score, const std::vector<DrivenSegment>& given, const CommandLimits& behind) {
+    return pays(score, given, {.without = kept, .with = kept, .limits = behind, .noise = noise}, kept);
+  };
+  CHECK(pay(3.0, all, limits));
+  CHECK_FALSE(pay(2.0, all, limits));
+  CHECK_FALSE(pay(3.0, segments(7), limits));
+  CHECK_FALSE(pay(3.0, all, free));
+  kept.structure = Structure::Cascaded;
+  CHECK(pay(3.0, all, free));
+}
+
+TEST_CASE("the estimate behind limits of all segments is handed on where it predicts them better than what is kept") {
+  const MotionPosterior same = kinematic_baseline();
+  const NoiseSettings noise;
+  const CommandLimits limits = limited();
+  const auto posterior = behind_all(segments(12), {.without = same, .with = same, .limits = limits, .noise = noise});
+  REQUIRE(posterior != nullptr);
+  CHECK(posterior->structure == Structure::Limited);
+  const CommandLimits free;
+  CHECK(behind_all(segments(12), {.without = same, .with = same, .limits = free, .noise = noise}) == nullptr);
 }
 
 TEST_CASE("segments since a moment start there or later") {

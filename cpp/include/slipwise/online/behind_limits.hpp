@@ -2,7 +2,7 @@
 // Segments as they are driven behind limits of the actuator, and whether that predicts them better.
 #pragma once
 
-#include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,8 +27,15 @@ struct LimitContest {
 /// Log score of the segments behind the limits over that without limits, each by what it knew before them.
 double gain_behind(std::span<const DrivenSegment> segments, const LimitContest& contest);
 
-/// Whether so much gain over so many segments is no chance.
-bool is_clear(double gain, std::span<const DrivenSegment> segments);
+/// Whether limits predict segments that neither estimate has learned better by a gain of `score`, which is no chance;
+/// and better than what is `kept`. That has learned these, which is hard to beat: it need not be beaten clearly, nor at
+/// all where it is cascaded as well.
+bool pays(double score, std::span<const DrivenSegment> segments, const LimitContest& contest,
+          const MotionPosterior& kept);
+
+/// The estimate behind limits of all segments, where it predicts them better than what is kept, which is `without`.
+/// What was compared before had learned the first half: of all, another answer of the drive may have come out.
+std::shared_ptr<const MotionPosterior> behind_all(std::span<const DrivenSegment> segments, const LimitContest& contest);
 
 /// Those that start at `t` [s] or later.
 std::vector<DrivenSegment> segments_since(std::span<const DrivenSegment> segments, double t);

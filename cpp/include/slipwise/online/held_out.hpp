@@ -9,12 +9,12 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <type_traits>
 #include <vector>
 
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/disturbance/slip_disturbance.hpp"
 #include "slipwise/filter/motion_posterior.hpp"
+#include "slipwise/online/shared_list.hpp"
 #include "slipwise/online/source_noise.hpp"
 #include "slipwise/online/student_calibration.hpp"
 #include "slipwise/segment/driven_segment.hpp"
@@ -48,39 +48,8 @@ struct HeldOutPrediction {
   double learned_until;        ///< stamp of the last measurement that the prediction uses [s]
 };
 
-/// The last predictions of one horizon, oldest first. Copies share them, so that a copy is small however many there
-/// are.
-class HeldOutPredictions {
- public:
-  static constexpr std::size_t kMost = 4096;
-
-  /// Keeps a prediction; the oldest goes where there are more than `kMost`.
-  void keep(std::shared_ptr<const HeldOutPrediction> prediction);
-  std::size_t size() const { return kept_.size(); }
-  const HeldOutPrediction& operator[](std::size_t i) const { return *kept_[i]; }
-  const HeldOutPrediction& back() const { return *kept_.back(); }
-
-  /// Names what is saved: the predictions, one after the other.
-  template <class Self, class Archive>
-  static void archive(Self& self, Archive& a) {
-    if constexpr (std::is_const_v<Self>) {
-      a(self.kept_.size());
-      for (const auto& each : self.kept_) {
-        a(*each);
-      }
-    } else {
-      std::deque<HeldOutPrediction> read;
-      a(read);
-      self.kept_.clear();
-      for (const HeldOutPrediction& each : read) {
-        self.kept_.push_back(std::make_shared<const HeldOutPrediction>(each));
-      }
-    }
-  }
-
- private:
-  std::deque<std::shared_ptr<const HeldOutPrediction>> kept_;
-};
+/// The last predictions of one horizon, oldest first.
+using HeldOutPredictions = SharedList<HeldOutPrediction, 4096>;
 
 /// The same numbers one kind after the other, [N] each, as statistics take them.
 struct HeldOutColumns {

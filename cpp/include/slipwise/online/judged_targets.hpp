@@ -4,14 +4,11 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <deque>
-#include <memory>
-#include <type_traits>
 #include <vector>
 
 #include "slipwise/actuator/command_limits.hpp"
-#include "slipwise/archive/bytes.hpp"
 #include "slipwise/filter/motion_posterior.hpp"
+#include "slipwise/online/shared_list.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
@@ -33,31 +30,14 @@ class JudgedTargets {
   /// \throws std::invalid_argument where a loaded one is of other horizons.
   void check_loaded(const JudgedTargets& made) const;
 
-  /// Names what is saved: the segments, one after the other.
+  /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    if constexpr (std::is_const_v<Self>) {
-      a(self.kept_.size());
-      for (const auto& each : self.kept_) {
-        a(each.size());
-        for (const auto& driven : each) {
-          a(*driven);
-        }
-      }
-    } else {
-      std::vector<std::deque<DrivenSegment>> read;
-      a(read);
-      self.kept_.assign(read.size(), {});
-      for (std::size_t i = 0; i < read.size(); ++i) {
-        for (DrivenSegment& driven : read[i]) {
-          self.kept_[i].push_back(std::make_shared<const DrivenSegment>(std::move(driven)));
-        }
-      }
-    }
+    a(self.kept_);
   }
 
  private:
-  std::vector<std::deque<std::shared_ptr<const DrivenSegment>>> kept_;  ///< of each horizon
+  std::vector<SharedList<DrivenSegment, kMost>> kept_;  ///< of each horizon
 };
 
 }  // namespace slipwise
