@@ -138,15 +138,19 @@ std::optional<ActuatorLimits> find_actuator_limits(const LimitData& data) {
   if (!pays(result.score, later, halves, data.kept)) {
     return result;
   }
-  MotionPosterior posterior = with_actuator(data.cascaded, learned_actuator(data.wheels, data.filter, &limits));
+  const auto all = with_actuator(data.cascaded, learned_actuator(data.wheels, data.filter, &limits));
+  const auto posterior =
+      behind_all(data.segments, {.without = data.kept, .with = all, .limits = limits, .noise = noise});
+  if (posterior == nullptr) {
+    return result;
+  }
   PredictiveScore score(noise);
   for (const DrivenSegment& segment : data.segments) {
     const DrivenSegment limited = behind(segment, limits);
-    score.score(posterior.model, posterior.estimate, limited.inputs, limited.segment);
+    score.score(posterior->model, posterior->estimate, limited.inputs, limited.segment);
   }
-  posterior.noise_scale = score.noise_scale();
-  result.posterior =
-      behind_all(data.segments, {.without = data.kept, .with = posterior, .limits = limits, .noise = noise});
+  posterior->noise_scale = score.noise_scale();
+  result.posterior = posterior;
   return result;
 }
 

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <iterator>
 #include <numbers>
-#include <utility>
 
 #include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/filter/weighting.hpp"
@@ -52,14 +51,13 @@ bool pays(double score, std::span<const DrivenSegment> segments, const LimitCont
   return clear && (kept.structure == Structure::Cascaded || gain_behind(segments, with_kept) > 0.0);
 }
 
-std::shared_ptr<const MotionPosterior> behind_all(std::span<const DrivenSegment> segments,
-                                                  const LimitContest& contest) {
+std::shared_ptr<MotionPosterior> behind_all(std::span<const DrivenSegment> segments, const LimitContest& contest) {
   if (gain_behind(segments, contest) <= 0.0) {
     return nullptr;
   }
-  MotionPosterior posterior = contest.with;
-  posterior.structure = Structure::Limited;
-  return std::make_shared<const MotionPosterior>(std::move(posterior));
+  auto posterior = std::make_shared<MotionPosterior>(contest.with);
+  posterior->structure = Structure::Limited;
+  return posterior;
 }
 
 std::vector<DrivenSegment> segments_since(std::span<const DrivenSegment> segments, double t) {

@@ -35,7 +35,7 @@ bool pays(double score, std::span<const DrivenSegment> segments, const LimitCont
 
 /// The estimate behind limits of all segments, where it predicts them better than what is kept, which is `without`.
 /// What was compared before had learned the first half: of all, another answer of the drive may have come out.
-std::shared_ptr<const MotionPosterior> behind_all(std::span<const DrivenSegment> segments, const LimitContest& contest);
+std::shared_ptr<MotionPosterior> behind_all(std::span<const DrivenSegment> segments, const LimitContest& contest);
 
 /// Those that start at `t` [s] or later.
 std::vector<DrivenSegment> segments_since(std::span<const DrivenSegment> segments, double t);
