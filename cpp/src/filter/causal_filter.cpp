@@ -8,11 +8,13 @@
 #include <limits>
 #include <numbers>
 #include <utility>
+#include <variant>
 
 #include "slipwise/filter/heavy_tails.hpp"
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/takes.hpp"
 #include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
@@ -106,6 +108,13 @@ void CausalFilter::pass(const Segment& segment) {
     force_.pass(state_.estimate, middle - force_at_);
     force_at_ = middle;
   }
+}
+
+void CausalFilter::take(const SlipCue& cue) {
+  std::visit(Takes{[this](const ForgetSlip& forgotten) { forget(forgotten.fraction); },
+                   [this](const ChangeExpected& /*now*/) { expect_change(); },
+                   [this](const SlipLasts& lasting) { lasting_ = lasting.seconds; }},
+             cue);
 }
 
 void CausalFilter::forget(double fraction) {

@@ -88,7 +88,7 @@ std::vector<std::string> MotionHypotheses::add_surfaces(const DisturbanceModel& 
   std::vector<Surface> surfaces;
   std::ranges::transform(other.surfaces, std::back_inserter(surfaces),
                          [&](const KnownSurface& each) { return completed(each, place); });
-  return bank_.add(averages(), law, std::move(surfaces), leader());
+  return bank_.add(learned_slip(law), std::move(surfaces));
 }
 
 std::optional<SlipOnSurface> MotionHypotheses::on_surface(const Surface& surface, Structure structure) const {
@@ -130,22 +130,26 @@ std::optional<SlipOnSurface> MotionHypotheses::slip_now(Structure structure) con
   return on_surface(here, structure);
 }
 
-Averages MotionHypotheses::averages() {
-  Averages found = averages_of(*this);
-  found[kDirect] = tried(Structure::Direct) ? found[kDirect] : nullptr;
-  found[kCascaded] = tried(Structure::Cascaded) ? found[kCascaded] : nullptr;
+/// What learns slip behind measured wheel speeds tells surfaces apart soonest.
+LearnedSlip MotionHypotheses::learned_slip(const DisturbanceModel& law) {
+  LearnedSlip found{.averages = averages_of(*this), .leader = kJoint, .law = law};
+  if (!tried(Structure::Direct)) {
+    found.averages[kDirect] = nullptr;
+  }
+  if (cascaded_ && tried(Structure::Cascaded)) {
+    found.leader = kCascaded;
+  } else {
+    found.averages[kCascaded] = nullptr;
+  }
   return found;
 }
-
-/// What learns slip behind measured wheel speeds tells surfaces apart soonest.
-std::size_t MotionHypotheses::leader() const { return cascaded_ && tried(Structure::Cascaded) ? kCascaded : kJoint; }
 
 void MotionHypotheses::start_run() {
   if (cascaded_) {
     cascaded_->restart();
   }
   if (settings_.average.surfaces.remember) {
-    for (RememberingAverage* average : averages()) {
+    for (RememberingAverage* average : averages_of(*this)) {
       if (average != nullptr) {
         average->forget_recent();
       }
@@ -154,7 +158,7 @@ void MotionHypotheses::start_run() {
 }
 
 void MotionHypotheses::start_drive(const DisturbanceModel& law, const DriveStart& start) {
-  bank_.start_drive(averages(), law, start);
+  bank_.start_drive(learned_slip(law), start);
   if (cascaded_) {
     cascaded_->restart();
     cascaded_->refresh();
@@ -163,7 +167,7 @@ void MotionHypotheses::start_drive(const DisturbanceModel& law, const DriveStart
 
 SurfaceBank MotionHypotheses::surfaces_now(const DisturbanceModel& law) const {
   MotionHypotheses now = *this;
-  now.bank_.keep_present(now.averages(), law);
+  now.bank_.keep_present(now.learned_slip(law));
   return now.bank_;
 }
 

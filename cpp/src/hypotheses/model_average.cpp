@@ -189,17 +189,9 @@ Eigen::VectorXd ModelAverage::scores_of(const Eigen::VectorXd& weights, std::spa
   return common_log_scores(sum > 0.0 ? Eigen::VectorXd(slipping / sum) : weights, updates);
 }
 
-void ModelAverage::forget(double fraction) {
-  for (CausalFilter& filter : filters_.keys()) {
-    filter.forget(fraction);
-  }
+void ModelAverage::take(const SlipCue& cue) {
+  std::ranges::for_each(filters_.keys(), [&](CausalFilter& filter) { filter.take(cue); });
 }
-
-void ModelAverage::expect_lasting(double seconds) {
-  std::ranges::for_each(filters_.keys(), [&](CausalFilter& filter) { filter.expect_lasting(seconds); });
-}
-
-void ModelAverage::expect_change() { std::ranges::for_each(filters_.keys(), &CausalFilter::expect_change); }
 
 std::vector<std::size_t> ModelAverage::side_places(std::size_t side) const {
   std::vector<std::size_t> places(places_.size());

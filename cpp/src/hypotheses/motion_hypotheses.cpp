@@ -143,29 +143,10 @@ void MotionHypotheses::learn_actuator(const WheelSegment& segment) {
   }
 }
 
-void MotionHypotheses::forget(double fraction) {
-  joint_.average().forget(fraction);
-  if (direct_) {
-    direct_->average().forget(fraction);
-  }
-  if (cascaded_) {
-    cascaded_->forget(fraction);
-  }
-}
-
-void MotionHypotheses::expect_lasting(const DisturbanceModel& law) {
-  const double seconds = correlation_time(law, kUsualCorrelationTime);
+void MotionHypotheses::take(const SlipCue& cue) {
   for (RememberingAverage* average : averages_of(*this)) {
     if (average != nullptr) {
-      average->average().expect_lasting(seconds);
-    }
-  }
-}
-
-void MotionHypotheses::expect_change() {
-  for (RememberingAverage* average : averages_of(*this)) {
-    if (average != nullptr) {
-      average->average().expect_change();
+      average->average().take(cue);
     }
   }
 }

@@ -16,27 +16,18 @@ using Kind = SurfaceCandidate::Kind;
 
 constexpr double kNow = std::numeric_limits<double>::infinity();  // no segment speaks yet
 
-template <class Use>
-void for_each(const Averages& averages, const Use& use) {
-  for (std::size_t i = 0; i < averages.size(); ++i) {
-    if (averages[i] != nullptr) {
-      use(i, *averages[i]);
-    }
-  }
-}
-
 SurfaceEvent::Kind event_of(Kind taken) {
   const auto another = taken == Kind::Known ? SurfaceEvent::Kind::Recalled : SurfaceEvent::Kind::Opened;
   return taken == Kind::Present ? SurfaceEvent::Kind::Kept : another;
 }
 
-void mark_parting(const Averages& averages, double since) {
-  for_each(averages, [&](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(since); });
+void mark_parting(const LearnedSlip& learned, double since) {
+  learned.for_each([&](std::size_t /*i*/, RememberingAverage& average) { average.mark_parting(since); });
 }
 
 /// Slip may be that of the candidates that are known. The present one is what goes on.
-void recall(const Averages& averages, const SurfaceTrial& trial, const SurfaceList& surfaces) {
-  for_each(averages, [&](std::size_t i, RememberingAverage& average) {
+void recall(const LearnedSlip& learned, const SurfaceTrial& trial, const SurfaceList& surfaces) {
+  learned.for_each([&](std::size_t i, RememberingAverage& average) {
     std::vector<RecalledSurface> known;
     for (std::size_t k = 0; k < trial.candidates().size(); ++k) {
       const SurfaceCandidate& each = trial.candidates()[k];
@@ -50,11 +41,11 @@ void recall(const Averages& averages, const SurfaceTrial& trial, const SurfaceLi
 }
 
 /// What is said before any segment speaks counts for predictions too.
-void weigh(SurfaceTrial& trial, const Eigen::VectorXd& log_factors, const Averages& averages,
+void weigh(SurfaceTrial& trial, const Eigen::VectorXd& log_factors, const LearnedSlip& learned,
            const SurfaceList& surfaces) {
   trial.weigh(log_factors);
   if (trial.segments() == 0) {
-    recall(averages, trial, surfaces);
+    recall(learned, trial, surfaces);
   }
 }
 
@@ -68,17 +59,17 @@ void SurfaceBank::see(const InputHistory& inputs, const Segment& segment) {
 }
 
 /// As it is now; a surface that was hardly driven is not kept.
-void SurfaceBank::keep_present(const Averages& averages, const DisturbanceModel& law) {
+void SurfaceBank::keep_present(const LearnedSlip& learned) {
   if (!settings_.remember) {
     return;
   }
-  mark_parting(averages, kNow);
+  mark_parting(learned, kNow);
   visit_.stay();
-  leave_present(averages, law);
+  leave_present(learned);
 }
 
 /// What was known of the present surface at parting is remembered.
-void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel& law) {
+void SurfaceBank::leave_present(const LearnedSlip& learned) {
   const int fewest = labels_.wanted().empty() ? settings_.fewest : settings_.soonest;  // a label says that there is one
   if (!surfaces_.present() && std::cmp_less(visit_.segments(), fewest)) {
     return;
@@ -86,18 +77,18 @@ void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel
   Surface& surface = surfaces_.present() ? surfaces_[*surfaces_.present()] : surfaces_.enter(labels_.take_wanted());
   visit_.leave(surface);
   heard_.leave(surface);
-  for_each(averages, [&](std::size_t i, RememberingAverage& average) {
+  learned.for_each([&](std::size_t i, RememberingAverage& average) {
     const auto& parting = average.parting();
     surface.memories[i] = parting ? *parting : average.average().remember();
   });
-  merge_confounded(averages, law, slipwise::present(surfaces_.present()));
+  merge_confounded(learned, slipwise::present(surfaces_.present()));
 }
 
-void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceModel& law, std::size_t place) {
+void SurfaceBank::merge_confounded(const LearnedSlip& learned, std::size_t place) {
   if (!settings_.merge) {
     return;
   }
-  const RememberingAverage& leader = *averages[leader_];
+  const RememberingAverage& leader = *learned.averages[leader_];
   const double told_apart = -std::log(settings_.false_alarm);
   const auto known = [&](const Surface& each) {
     return std::cmp_greater_equal(each.segments, settings_.fewest) && each.memories[leader_];
@@ -126,24 +117,24 @@ void SurfaceBank::know(std::vector<Surface> surfaces, const LabelCounts& labels)
   labels_.know(labels);
 }
 
-std::vector<std::string> SurfaceBank::add(const Averages& averages, const DisturbanceModel& law,
-                                          std::vector<Surface> others, std::size_t leader) {
-  leader_ = trial_ ? leader_ : leader;
+std::vector<std::string> SurfaceBank::add(const LearnedSlip& learned,
+                                          std::vector<Surface> others) {
+  leader_ = trial_ ? leader_ : learned.leader;
   std::vector<std::string> names;
   for (Surface& other : others) {
     names.push_back(surfaces_.add(std::move(other)));
-    merge_confounded(averages, law, surfaces_.size() - 1);
+    merge_confounded(learned, surfaces_.size() - 1);
   }
   surfaces_.drop_least_used(settings_.most);
   return names;
 }
 
-void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
+void SurfaceBank::open(const LearnedSlip& learned, std::vector<SurfaceCandidate> candidates,
                        double since) {
   labels_.weigh(candidates, surfaces_);
   heard_.begin_trial(candidates.size());
-  mark_parting(averages, since);
-  const RememberingAverage& leader = *averages[leader_];
+  mark_parting(learned, since);
+  const RememberingAverage& leader = *learned.averages[leader_];
   std::vector<SurfaceMemory> known;
   for (const Surface& surface : surfaces_.all()) {  // an average that began later has not learned the older ones
     const auto& memory = surface.memories[leader_];
@@ -152,40 +143,40 @@ void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, st
   trial_.emplace(std::move(candidates), known, leader, law, since);
 }
 
-void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& law, const DriveStart& start) {
+void SurfaceBank::start_drive(const LearnedSlip& learned, const DriveStart& start) {
   if (!settings_.remember) {
     return;
   }
   let_go();
   if (trial_) {
-    settle(averages, law, true);
+    settle(learned, true);
     let_go();
   }
-  keep_present(averages, law);
+  keep_present(learned);
   visit_.start_drive(start.date);
   labels_.start_drive(start.label, surfaces_);
   heard_.begin();
   if (surfaces_.size() > 0) {
-    open(averages, law, candidates_of_start(surfaces_.size(), settings_), kNow);
-    recall(averages, slipwise::present(trial_), surfaces_);
+    open(learned, candidates_of_start(surfaces_.size(), settings_), kNow);
+    recall(learned, slipwise::present(trial_), surfaces_);
     surfaces_.leave();
   }
 }
 
 /// Something says that the surface may be another from now on.
-void SurfaceBank::suspect(const Averages& averages, const DisturbanceModel& law) {
+void SurfaceBank::suspect(const LearnedSlip& learned) {
   const bool doubted = let_go();
   if (surfaces_.size() > 0) {  // what it parts from is what was known before the suspicion
-    open(averages, law, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_), kNow);
+    open(learned, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_), kNow);
   }
-  for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.average().expect_change(); });
+  learned.for_each([](std::size_t /*i*/, RememberingAverage& average) { average.average().take(ChangeExpected{}); });
   if (trial_) {
-    recall(averages, *trial_, surfaces_);
+    recall(learned, *trial_, surfaces_);
   }
 }
 
 /// A label says nothing new where it is the one that speaks already, or names the surface that is driven on.
-void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, const std::string& label) {
+void SurfaceBank::cue(const LearnedSlip& learned, const std::string& label) {
   const bool open_already = trial_.has_value() && !held_;
   const std::string named = open_already ? labels_.label() : labels_.name_here(surfaces_);
   const bool same = !label.empty() && label == named;
@@ -194,18 +185,18 @@ void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, con
   }
   if (open_already && trial_->segments() < settings_.soonest) {
     labels_.say(label);
-    weigh(*trial_, labels_.factors(trial_->candidates(), surfaces_).log(), averages, surfaces_);
+    weigh(*trial_, labels_.factors(trial_->candidates(), surfaces_).log(), learned, surfaces_);
     return;
   }
   if (open_already) {  // what was driven so far was on one surface
-    settle(averages, law, true);
+    settle(learned, true);
   }
-  keep_present(averages, law);
+  keep_present(learned);
   labels_.change(label, surfaces_);
-  suspect(averages, law);
+  suspect(learned);
 }
 
-void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, const TerrainAnswer& answer) {
+void SurfaceBank::hear(const LearnedSlip& learned, const TerrainAnswer& answer) {
   check_answer(answer);
   if (!settings_.remember) {
     return;
@@ -216,24 +207,24 @@ void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, co
     if (!heard_.hear(said, candidates, surfaces_, labels_.name_here(surfaces_))) {
       return;
     }
-    keep_present(averages, law);
+    keep_present(learned);
     labels_.say("");
-    suspect(averages, law);
+    suspect(learned);
   }
   SurfaceTrial& trial = slipwise::present(trial_);
-  weigh(trial, heard_.hear_in_trial(said, trial.candidates(), surfaces_, labels_.name_here(surfaces_)), averages,
+  weigh(trial, heard_.hear_in_trial(said, trial.candidates(), surfaces_, labels_.name_here(surfaces_)), learned,
         surfaces_);
 }
 
-void SurfaceBank::consider(const Averages& averages, std::size_t leader, const DisturbanceModel& law) {
+void SurfaceBank::consider(const LearnedSlip& learned) {
   if (!settings_.remember) {
     return;
   }
-  const auto changed_since = averages[leader]->take_change();
+  const auto changed_since = learned.averages[learned.leader]->take_change();
   if (trial_) {
-    trial_->follow(*averages[leader_]);
+    trial_->follow(*learned.averages[leader_]);
     if (!held_) {
-      settle(averages, law, false);
+      settle(learned, false);
       return;
     }
     if (!changed_since) {
@@ -242,18 +233,18 @@ void SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
     }
   }
   const bool doubted = let_go();
-  leader_ = leader;
+  leader_ = learned.leader;
   if (!changed_since) {
     return;
   }
   if (surfaces_.size() > (surfaces_.present() ? 1 : 0)) {
     labels_.say("");
-    open(averages, law, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_),
+    open(learned, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_),
          *changed_since);
     return;
   }
-  mark_parting(averages, *changed_since);
-  leave_present(averages, law);
+  mark_parting(learned, *changed_since);
+  leave_present(learned);
   heard_.forget_doubt();
   surfaces_.leave_for_new(settings_.most);
 }
@@ -285,7 +276,7 @@ bool SurfaceBank::let_go() {
 
 /// Takes a candidate where it is certain enough, or time is over, or at once. A known surface is doubted until time is
 /// over.
-void SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, bool at_once) {
+void SurfaceBank::settle(const LearnedSlip& learned, bool at_once) {
   SurfaceTrial& trial = slipwise::present(trial_);
   const auto& candidates = trial.candidates();
   const bool at_start = candidates.front().kind != Kind::Present;
@@ -316,13 +307,13 @@ void SurfaceBank::settle(const Averages& averages, const DisturbanceModel& law, 
     trial_.reset();
   }
   if (taken.kind != Kind::Present && !at_start) {
-    leave_present(averages, law);
+    leave_present(learned);
   }
   if (taken.kind == Kind::Present) {
     visit_.stay();
   } else {  // what filters find that began before is no change of what is taken
     visit_.come_to_another();
-    for_each(averages, [](std::size_t /*i*/, RememberingAverage& average) { average.forget_recent(); });
+    learned.for_each([](std::size_t /*i*/, RememberingAverage& average) { average.forget_recent(); });
   }
   heard_.end_trial(taken.kind != Kind::Present);
   const std::string name = labels_.judge(taken, recalled, decision.sure, surfaces_);

@@ -223,7 +223,7 @@ void SegmentLearner::learn_disturbance(const DrivenSegment& segment) {
     const auto& before = known_.newest().slip;
     const SlipNow& slip = known_.slip_after(disturbance_, before, known_.segments_until(segment.segment.start));
     disturbance_.learn(*before, slip, segment);
-    hypotheses_.expect_lasting(disturbance_.law());
+    hypotheses_.take(SlipLasts{correlation_time(disturbance_.law(), kUsualCorrelationTime)});
   }
 }
 
@@ -254,7 +254,7 @@ void SegmentLearner::publish(const DrivenSegment& segment, double wheel_interval
 }
 
 void SegmentLearner::consider_surfaces(double t) {
-  hypotheses_.bank().consider(hypotheses_.averages(), hypotheses_.leader(), disturbance_.law());
+  hypotheses_.bank().consider(hypotheses_.learned_slip(disturbance_.law()));
   note_surfaces(log_.run(), t);
 }
 

@@ -101,10 +101,10 @@ TEST_CASE("a change that is expected makes slip less sure, once until something 
   learn(told, driven(model, -0.3, 107, 60));
   CausalFilter alone = told;
   const double before = told.reported().covariance(kYaw, kYaw);
-  told.expect_change();
+  told.take(ChangeExpected{});
   const Eigen::MatrixXd once = told.reported().covariance;
   CHECK(once(kYaw, kYaw) > 4.0 * before);
-  told.expect_change();
+  told.take(ChangeExpected{});
   CHECK(told.reported().covariance == once);
   const auto after = driven(model, -0.4, 108, 2);
   learn(told, after);

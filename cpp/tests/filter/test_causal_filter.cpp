@@ -107,7 +107,7 @@ TEST_CASE("what is fitted again after a change goes on from the noise that was k
   CausalFilter filter = learned_under(30.0, 68);
   const double known = filter.noise_scale().maxCoeff();
   CHECK(known < 0.2);
-  filter.forget(0.5);
+  filter.take(ForgetSlip{0.5});
   const auto later = tests::simulate_drive(filter.model(), Eigen::Vector2d(-0.05, -0.3),
                                            {.seed = 83, .windows = 20, .window = 2.0, .noise = kTrueNoise});
   for (const Segment& segment : later.segments) {
@@ -195,7 +195,7 @@ TEST_CASE("what is learned again after a change of terrain is the new terrain") 
       filter.learn(drive.inputs, segment, kSpeeds);
     }
     CHECK(std::abs(filter.estimate().mean[1] - slip) < 3.0 * std::sqrt(filter.estimate().covariance(1, 1)));
-    filter.forget(1.0);
+    filter.take(ForgetSlip{1.0});
   }
 }
 
@@ -208,7 +208,7 @@ TEST_CASE("forgetting gives slip its prior variance back in part, and nothing to
     filter.learn(drive.inputs, segment, kSpeeds);
   }
   const Estimate before = filter.estimate();
-  filter.forget(0.25);
+  filter.take(ForgetSlip{0.25});
   const Eigen::VectorXd variance = filter.estimate().covariance.diagonal();
   const Eigen::VectorXd prior = filter.prior_std().cwiseAbs2();
   CHECK(filter.estimate().mean == before.mean);

@@ -29,7 +29,7 @@ struct Known {
     }
     tests::drive_on_surface(average, named.front().second, 75);
   }
-  Averages averages() { return {&average, nullptr, nullptr}; }
+  LearnedSlip slip() { return {.averages = {&average, nullptr, nullptr}}; }
 };
 
 SurfaceSettings remembering() {
@@ -51,7 +51,7 @@ TEST_CASE("at a start every surface competes beside a new one, and a label makes
     Known known({{"hall", -0.1}, {"sand", -0.5}});
     SurfaceBank bank(remembering());
     bank.know(known.surfaces, {});
-    bank.start_drive(known.averages(), kWhiteSlip, {.label = label, .date = ""});
+    bank.start_drive(known.slip(), {.label = label, .date = ""});
     CHECK_FALSE(bank.present());
     const auto found = bank.probabilities();
     REQUIRE(found.size() == 3);
@@ -68,8 +68,8 @@ TEST_CASE("the surface that is driven on is recalled, its visit counted, and a l
   SurfaceBank bank(remembering());
   bank.know(known.surfaces, {});
   const double before = bank.labels().reliability();
-  bank.start_drive(known.averages(), kWhiteSlip, {.label = "sand", .date = "2026-01-01"});
-  tests::drive_on_surface(known.average, -0.5, 76, 8, [&] { bank.consider(known.averages(), kJoint, kWhiteSlip); });
+  bank.start_drive(known.slip(), {.label = "sand", .date = "2026-01-01"});
+  tests::drive_on_surface(known.average, -0.5, 76, 8, [&] { bank.consider(known.slip()); });
   REQUIRE(bank.present());
   CHECK(bank.surfaces()[*bank.present()].name == "sand");
   CHECK(bank.surfaces()[*bank.present()].visits == 2);
@@ -78,7 +78,7 @@ TEST_CASE("the surface that is driven on is recalled, its visit counted, and a l
   REQUIRE(events.size() == 1);
   CHECK(events.front().kind == SurfaceEvent::Kind::Recalled);
   CHECK(bank.take_events().empty());
-  bank.hear(known.averages(), kWhiteSlip,
+  bank.hear(known.slip(),
             {.classes = {"sand", "ice"}, .probability = Eigen::Vector2d(0.9, 0.1), .unknown = 0.0});
   CHECK(bank.probabilities().size() == 2);  // against what is like it, which an answer that says the same does not end
 }
@@ -91,7 +91,7 @@ TEST_CASE(
   CHECK(bank.probabilities().front().name.empty());
   CHECK(bank.probabilities().front().probability == 1.0);
   bank.know(known.surfaces, {});
-  bank.cue(known.averages(), kWhiteSlip, "ice");  // the present one, what became of it, and a new one have no name
+  bank.cue(known.slip(), "ice");  // the present one, what became of it, and a new one have no name
   const auto found = bank.probabilities();
   REQUIRE(found.size() == 3);
   CHECK(found[0].name.empty());
@@ -104,7 +104,7 @@ TEST_CASE("surfaces that come back are predicted from the first segments on, and
     RememberingAverage goes_on = known.average;
     SurfaceBank bank(remembering());
     bank.know(known.surfaces, {});
-    bank.start_drive(known.averages(), kWhiteSlip, {});
+    bank.start_drive(known.slip(), {});
     tests::drive_on_surface(known.average, yaw_slip, 78, 3);
     tests::drive_on_surface(goes_on, yaw_slip, 78, 3);
     const double recalled = std::abs(known.average.average().state().estimate.mean[1] - yaw_slip);
@@ -119,11 +119,11 @@ TEST_CASE("what is added is merged with what it cannot be told from, and a name 
   bank.know({known.surfaces[0]}, {});
   Surface another = known.surfaces[1];
   another.name = "surface 1";
-  CHECK(bank.add(known.averages(), kWhiteSlip, {another}, kJoint) == std::vector<std::string>{"surface 1 (2)"});
+  CHECK(bank.add(known.slip(), {another}) == std::vector<std::string>{"surface 1 (2)"});
   CHECK(names(bank) == std::vector<std::string>{"surface 1", "surface 1 (2)"});
   Surface same = known.surfaces[1];
   same.name = "sand";
-  bank.add(known.averages(), kWhiteSlip, {same}, kJoint);
+  bank.add(known.slip(), {same});
   REQUIRE(bank.surfaces().size() == 2);
   CHECK(bank.surfaces()[1].segments == 80);
   CHECK(bank.surfaces()[1].visits == 2);
@@ -132,9 +132,9 @@ TEST_CASE("what is added is merged with what it cannot be told from, and a name 
 TEST_CASE("without a memory nothing is counted, opened or kept") {
   Known known({{"hall", -0.1}});
   SurfaceBank bank{SurfaceSettings{}};
-  bank.start_drive(known.averages(), kWhiteSlip, {.label = "hall", .date = ""});
-  bank.keep_present(known.averages(), kWhiteSlip);
-  bank.consider(known.averages(), kJoint, kWhiteSlip);
+  bank.start_drive(known.slip(), {.label = "hall", .date = ""});
+  bank.keep_present(known.slip());
+  bank.consider(known.slip());
   CHECK(bank.surfaces().empty());
   CHECK(bank.take_events().empty());
 }

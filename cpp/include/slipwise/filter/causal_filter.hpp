@@ -18,6 +18,7 @@
 #include "slipwise/filter/noise_scale.hpp"
 #include "slipwise/filter/prior.hpp"
 #include "slipwise/filter/score_covariance.hpp"
+#include "slipwise/filter/slip_cue.hpp"
 #include "slipwise/filter/speed_range.hpp"
 #include "slipwise/filter/surface_slip.hpp"
 
@@ -45,15 +46,8 @@ class CausalFilter {
   /// The ways in which slip may have jumped, where it may.
   const BranchBank& branches() const { return branches_; }
 
-  /// Gives the slip parameters `fraction` of their prior variance back and keeps their mean. Lag, delay and clock are
-  /// the robot's, not the terrain's: they stay as learned.
-  void forget(double fraction);
-
-  /// Something says that the terrain may have changed just now: slip may have jumped, and where none may jump it is
-  /// less sure.
-  void expect_change();
-  /// Slip differs from what is learned for about so long [s]; covariances are stated accordingly.
-  void expect_lasting(double seconds) { lasting_ = seconds; }
+  /// Something says how slip is, or may be, now.
+  void take(const SlipCue& cue);
 
   /// The estimate of the surface that is driven on, apart from the robot.
   SurfaceSlip surface() const;
@@ -94,6 +88,8 @@ class CausalFilter {
   }
 
  private:
+  void forget(double fraction);
+  void expect_change();
   Estimate on_surface(const SurfaceSlip& surface, double drift) const;
   void follow(const ReferenceSpeeds& speeds);
   Estimate prior(const ReferenceSpeeds& speeds) const;

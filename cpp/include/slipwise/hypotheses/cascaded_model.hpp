@@ -56,8 +56,6 @@ class CascadedModel {
   const SlipChange& change() const { return change_; }
   /// Whether a refit of the slip took effect since the last `refresh` but one.
   bool refitted() const { return refitted_; }
-  /// Gives the slip parameters `fraction` of their prior variance back.
-  void forget(double fraction) { slip_.average().forget(fraction); }
   /// What learns the slip.
   RememberingAverage& slip() { return slip_; }
   const RememberingAverage& slip() const { return slip_; }

@@ -71,12 +71,8 @@ class ModelAverage {
   /// Whether a refit took effect with the last segment.
   bool refitted() const { return std::ranges::any_of(filters_.keys(), &CausalFilter::refitted); }
 
-  /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
-  void forget(double fraction);
-  /// Something says that the terrain may have changed just now.
-  void expect_change();
-  /// Slip differs from what is learned for about so long [s].
-  void expect_lasting(double seconds);
+  /// Something says how slip is, or may be, now.
+  void take(const SlipCue& cue);
 
   /// The estimate of the surface that is driven on, or of the likeliest.
   SurfaceMemory remember() const;

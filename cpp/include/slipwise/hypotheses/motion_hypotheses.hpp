@@ -91,24 +91,19 @@ class MotionHypotheses {
   void learn_actuator(const WheelSegment& segment);
   /// Does a bounded slice of the refits of all filters; whether there was any to do. Results do not depend on it.
   bool refit_slice();
-  /// Gives all slip parameters `fraction` of their prior variance back: another sensor says that the terrain changed.
-  void forget(double fraction);
-  /// Something says that the terrain may have changed just now.
-  void expect_change();
-  /// Slip differs from what is learned as the slip disturbance says.
-  void expect_lasting(const DisturbanceModel& law);
+  /// Something beside segments says how slip is, or may be, now.
+  void take(const SlipCue& cue);
   /// Another drive begins: on a surface that is remembered, or a new one. `law` is the slip disturbance as it is known.
   void start_drive(const DisturbanceModel& law, const DriveStart& start);
   /// Segments of one run are not joined with those of another.
   void start_run();
   /// The surfaces as they are known now, the present one included, and which one that is.
   SurfaceBank surfaces_now(const DisturbanceModel& law) const;
-  /// The surfaces that the structures share; what happens to them needs the averages of those that are tried, and of
-  /// these the one that tells surfaces apart soonest.
+  /// The surfaces that the structures share.
   SurfaceBank& bank() { return bank_; }
   const SurfaceBank& bank() const { return bank_; }
-  Averages averages();
-  std::size_t leader() const;
+  /// What is known of slip now, which the bank needs: by the averages of the structures that are tried.
+  LearnedSlip learned_slip(const DisturbanceModel& law);
   /// The estimate of a surface in the terms of a structure; empty if it has no memory.
   std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const;
   /// The same of the surface that is driven on, whether surfaces are remembered or not.

@@ -20,6 +20,23 @@ namespace slipwise {
 
 using Averages = std::array<RememberingAverage*, kAverages>;
 
+/// What a learner knows of slip: by its averages, of which null are those that are not tried.
+struct LearnedSlip {
+  Averages averages;
+  std::size_t leader = kJoint;        ///< the average that tells surfaces apart soonest
+  DisturbanceModel law = kWhiteSlip;  ///< of the slip disturbance
+
+  /// Calls `use` with the place and the average of each that is tried.
+  template <class Use>
+  void for_each(const Use& use) const {
+    for (std::size_t i = 0; i < averages.size(); ++i) {
+      if (averages[i] != nullptr) {
+        use(i, *averages[i]);
+      }
+    }
+  }
+};
+
 /// Facts about a drive's start.
 struct DriveStart {
   std::string label = {};  ///< name of the surface, if a label gives it
@@ -33,20 +50,20 @@ class SurfaceBank {
   explicit SurfaceBank(const SurfaceSettings& settings = {}) : settings_(settings) {}
 
   /// A drive begins somewhere: any known surface, or a new one.
-  void start_drive(const Averages& averages, const DisturbanceModel& law, const DriveStart& start);
+  void start_drive(const LearnedSlip& learned, const DriveStart& start);
   /// A label says that the surface is `label`, or another from now on where that is empty.
-  void cue(const Averages& averages, const DisturbanceModel& law, const std::string& label);
+  void cue(const LearnedSlip& learned, const std::string& label);
   /// A sensor says what the terrain under the robot is: where another surface explains it far better than the present
   /// one, a trial begins.
-  void hear(const Averages& averages, const DisturbanceModel& law, const TerrainAnswer& answer);
-  /// After each segment: changes that the average `leader` found open trials, and the evidence of its segments ends
+  void hear(const LearnedSlip& learned, const TerrainAnswer& answer);
+  /// After each segment: changes that the leading average found open trials, and the evidence of its segments ends
   /// them.
-  void consider(const Averages& averages, std::size_t leader, const DisturbanceModel& law);
+  void consider(const LearnedSlip& learned);
   /// Counts a segment that was driven on the present surface.
   void see(const InputHistory& inputs, const Segment& segment);
 
   /// The surface that is driven on is remembered as it is now.
-  void keep_present(const Averages& averages, const DisturbanceModel& law);
+  void keep_present(const LearnedSlip& learned);
   const std::vector<Surface>& surfaces() const { return surfaces_.all(); }
   /// The one that is driven on; empty if that is open, or it has no entry yet.
   std::optional<std::size_t> present() const { return surfaces_.present(); }
@@ -59,8 +76,7 @@ class SurfaceBank {
   void know(std::vector<Surface> surfaces, const LabelCounts& labels);
   /// Takes in surfaces of another memory of the same robot. One that cannot be distinguished from a known one
   /// becomes one with it; one whose name is taken gets a number. Returns their names here.
-  std::vector<std::string> add(const Averages& averages, const DisturbanceModel& law, std::vector<Surface> others,
-                               std::size_t leader);
+  std::vector<std::string> add(const LearnedSlip& learned, std::vector<Surface> others);
 
   /// \throws std::invalid_argument where a loaded one is none that `made`, of the same settings, could have become
   /// beside these averages.
@@ -73,14 +89,14 @@ class SurfaceBank {
   }
 
  private:
-  void open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
+  void open(const LearnedSlip& learned, std::vector<SurfaceCandidate> candidates,
             double since);
-  void settle(const Averages& averages, const DisturbanceModel& law, bool at_once);
-  void suspect(const Averages& averages, const DisturbanceModel& law);
+  void settle(const LearnedSlip& learned, bool at_once);
+  void suspect(const LearnedSlip& learned);
   void doubt();
   bool let_go();
-  void leave_present(const Averages& averages, const DisturbanceModel& law);
-  void merge_confounded(const Averages& averages, const DisturbanceModel& law, std::size_t place);
+  void leave_present(const LearnedSlip& learned);
+  void merge_confounded(const LearnedSlip& learned, std::size_t place);
 
   SurfaceSettings settings_;
   SurfaceList surfaces_;

@@ -4,6 +4,7 @@
 
 #include <variant>
 
+#include "slipwise/linear/takes.hpp"
 #include "slipwise/online/force_buffer.hpp"
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_gate.hpp"
@@ -24,12 +25,6 @@ struct WheelSample {
 
 /// At one stamp, in this order: what was commanded, and what moved and pushed the robot, come before where it was.
 using Measurement = std::variant<CommandSample, WheelSample, KnownForce, Tilt, MeasuredPose, Reading>;
-
-/// Several functions as one, which takes each kind of measurement by its own.
-template <class... Functions>
-struct Takes : Functions... {
-  using Functions::operator()...;
-};
 
 /// Its stamp [s].
 inline double& stamp_of(Measurement& measurement) {
