@@ -97,6 +97,7 @@ lint: all $(STAMPS)/test $(STAMPS)/lint ## run all checks of style, types, layer
 
 lint-files: $(STAMPS)/lint
 	@$(PYTHON_IN) tools/check_files.py
+	@$(PYTHON_IN) tools/check_classes.py
 
 lint-layers: all $(STAMPS)/lint
 	@$(PYTHON_IN) tools/check_includes.py

@@ -334,11 +334,11 @@ void bind_online(nb::module_& m) {
            "How probable each surface is to be the one under the robot; empty if none are remembered.")
       .def("surfaces", locked(&MotionLearner::surfaces), "The surfaces that are remembered, as they are known now.")
       .def("on_surface", locked([](const MotionLearner& learner, const Surface& surface, std::size_t structure) {
-             return learner.learned().hypotheses().on_surface(surface, structure_of(structure));
+             return slip_on(learner.learned().hypotheses().structures(), surface, structure_of(structure));
            }),
            "surface"_a, "structure"_a, "Slip on one of them in the terms of a structure; None where it has no memory.")
       .def("slip_now", locked([](const MotionLearner& learner, std::size_t structure) {
-             return learner.learned().hypotheses().slip_now(structure_of(structure));
+             return slip_now(learner.learned().hypotheses().structures(), structure_of(structure));
            }),
            "structure"_a, "The same of the surface that is driven on, whether surfaces are remembered or not.")
       .def("begin_with", locked(&MotionLearner::begin_with), "known"_a, "law"_a, "wheels"_a,

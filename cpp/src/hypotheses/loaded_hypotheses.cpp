@@ -129,7 +129,7 @@ void CascadedModel::check_loaded(const CascadedModel& made) const {
   actuator_.check_loaded(made.actuator_);
 }
 
-void MotionHypotheses::check_loaded(const MotionHypotheses& made) const {
+void Structures::check_loaded(const Structures& made) const {
   require(archive::same(settings_, made.settings_) && direct_bases_ == made.direct_bases_ &&
               direct_.has_value() == made.direct_.has_value() && cascaded_.has_value() == made.cascaded_.has_value() &&
               are_weights(tried_.weights()),
@@ -141,17 +141,20 @@ void MotionHypotheses::check_loaded(const MotionHypotheses& made) const {
   if (cascaded_) {
     cascaded_->check_loaded(present(made.cascaded_));
   }
-  bank_.check_loaded(made.bank_, averages_of(*this));
   const auto there = [&](Structure structure) {
     return structure == Structure::Joint || structure == Structure::Baseline ||
            (structure == Structure::Direct && direct_) || (structure == Structure::Cascaded && cascaded_);
   };
-  require(std::ranges::all_of(tried_.keys(), there) &&
+  require(std::ranges::all_of(tried_.keys(), there) && tried(Structure::Joint) &&
               std::ranges::adjacent_find(tried_.keys(), std::greater_equal()) == tried_.keys().end(),
           "a structure is tried that is not there");
-  require(
-      tried(Structure::Joint) && predicted_.size() <= to_predict_.size() && (!segment_ || to_predict_ == tried_.keys()),
-      "a segment is predicted by a structure that is not there");
+}
+
+void MotionHypotheses::check_loaded(const MotionHypotheses& made) const {
+  structures_.check_loaded(made.structures_);
+  bank_.check_loaded(made.bank_, structures_.averages());
+  require(predicted_.size() <= to_predict_.size() && (!segment_ || to_predict_ == structures_.tried()),
+          "a segment is predicted by a structure that is not there");
 }
 
 }  // namespace slipwise

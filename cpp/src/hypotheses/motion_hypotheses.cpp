@@ -1,162 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structures that predict each segment before they learn it.
+// A segment piece by piece: each structure predicts it before any learns it.
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "slipwise/linear/present.hpp"
-#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kPatience, 0.3);     // of the bases' learning rate: what tells structures apart repeats in each segment
-SLIPWISE_TUNING(kDirectPrior, 1.4);  // prior weights, others having 1: of what predicts alike, the simplest
-SLIPWISE_TUNING(kBaselinePrior, 2.0);  // the same
-SLIPWISE_TUNED std::array<double, kStructures> kPrior{1.0, 1.0, 1.0, kDirectPrior, kBaselinePrior};
-SLIPWISE_TUNING(kRefutedOdds, 1e3);
-constexpr double kFavoured = 0.9;                // weight of the structure that was the best before
-const double kRefuted = std::log(kRefutedOdds);  // tempered log odds against a structure from which on it is dropped
-
-std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
-
-/// What these miss must not pass for noise.
-bool is_simple(Structure structure) { return structure == Structure::Direct || structure == Structure::Baseline; }
-
-const MotionModel& baseline_model() {
-  static const MotionModel model({"none", {}, {}, {}}, {});
-  return model;
-}
-
-/// Places of the two bases with the fewest terms and of the one with the most.
-std::vector<Eigen::Index> few_bases(const std::vector<Basis>& bases) {
-  std::vector<Eigen::Index> by_size(bases.size());
-  std::iota(by_size.begin(), by_size.end(), Eigen::Index{0});
-  std::ranges::stable_sort(by_size, {}, [&](Eigen::Index i) { return bases[static_cast<std::size_t>(i)].size(); });
-  std::vector<Eigen::Index> few{by_size.front(), by_size[std::min<std::size_t>(1, by_size.size() - 1)], by_size.back()};
-  std::ranges::sort(few);
-  few.erase(std::ranges::unique(few).begin(), few.end());
-  return few;
-}
-
-std::vector<Basis> chosen(const std::vector<Basis>& bases, const std::vector<Eigen::Index>& places) {
-  std::vector<Basis> few;
-  for (const Eigen::Index place : places) {
-    few.push_back(bases[static_cast<std::size_t>(place)]);
-  }
-  return few;
-}
+std::size_t update_of(Structure structure) { return static_cast<std::size_t>(structure); }
 
 }  // namespace
 
-std::vector<Basis> averaged_bases() {
-  std::vector<Basis> bases{{"none", {}, {}, {}}};
-  for (const auto* name : {"edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10"}) {
-    bases.push_back(named_basis(name));
-  }
-  return bases;
-}
-
 MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
-    : settings_(settings),
-      joint_(ModelAverage("auto", settings.bases,
-                          {.dynamics = settings.dynamics,
-                           .clock_offset = settings.clock_offset && !settings.dynamics,
-                           .sensor_extrinsics = settings.sensor_extrinsics,
-                           .lags = !settings.dynamics,
-                           .wheelbase = settings.dynamics ? settings.wheelbase : 0.0},
-                          settings.filter, settings.average)),
-      baseline_(settings.filter.noise),
-      bank_(settings.average.surfaces) {
-  const auto attempt = [&](Structure structure) { tried_.add(structure, kPrior[index(structure)]); };
-  attempt(Structure::Joint);
-  if (settings.direct && settings.dynamics) {
-    attempt(Structure::Direct);
-    direct_bases_ = few_bases(settings.bases);
-    direct_.emplace(ModelAverage(
-        "auto", chosen(settings.bases, direct_bases_),
-        ActuatorParameters{
-            .sensor_extrinsics = settings.sensor_extrinsics, .delays = true, .wheelbase = settings.wheelbase},
-        settings.filter, settings.average));
-  }
-  if (settings.baseline) {
-    attempt(Structure::Baseline);
-  }
-  if (settings.cascaded && settings.dynamics) {
-    cascaded_.emplace(RememberingAverage(ModelAverage("auto", settings.bases,
-                                                      {.clock_offset = settings.clock_offset,
-                                                       .sensor_extrinsics = settings.sensor_extrinsics,
-                                                       .lags = settings.clock_offset},
-                                                      settings.filter, settings.average)),
-                      settings.filter, settings.wheelbase);
-  }
-  tried_.normalise();
-}
-
-std::array<double, kStructures> MotionHypotheses::weights() const {
-  std::array<double, kStructures> all{};
-  for (std::size_t i = 0; i < tried_.size(); ++i) {
-    all.at(index(tried_[i])) = tried_.weights()[static_cast<Eigen::Index>(i)];
-  }
-  return all;
-}
-
-/// Where wheel speeds come beside the commands, with the weight that it would have had from the start.
-void MotionHypotheses::join_cascade() {
-  std::vector<std::size_t> order(tried_.size() + 1);
-  std::iota(order.begin(), order.end(), 0);
-  std::rotate(order.begin() + 1, order.end() - 1, order.end());  // behind the joint model, which is the first
-  tried_.join(Structure::Cascaded, kPrior[index(Structure::Cascaded)], tried_.evidence()[0]);
-  tried_ = tried_.chosen(order);
-  if (begun_with_ == Structure::Cascaded) {
-    favour_known();
-  }
-}
+    : structures_(settings), bank_(settings.average.surfaces) {}
 
 /// What was the best before begins as such, once it is tried.
-void MotionHypotheses::favour_known() {
-  if (begun_with_ && tried(*begun_with_)) {
-    tried_.favour(tried_.place_of(*begun_with_), kFavoured);
+void MotionHypotheses::join_cascade(bool wheels_known) {
+  if (structures_.join_cascade(wheels_known) && begun_with_ == Structure::Cascaded) {
+    structures_.favour(Structure::Cascaded);
   }
 }
 
-void MotionHypotheses::start_slip(const DrivenSegment& segment) {
-  if (cascaded_) {
-    cascaded_->start_slip(segment);
-  }
-}
-
-bool MotionHypotheses::advance_slip() { return cascaded_ && cascaded_->advance_slip(); }
-
-/// What is due soonest comes first.
-bool MotionHypotheses::refit_slice() {
-  return (cascaded_ && cascaded_->refit_slice()) || joint_.average().refit_slice() ||
-         (tried(Structure::Direct) && direct_ && direct_->average().refit_slice());
-}
-
-void MotionHypotheses::learn_actuator(const WheelSegment& segment) {
-  if (cascaded_) {
-    cascaded_->learn_actuator(segment);
-  }
-}
-
-void MotionHypotheses::take(const SlipCue& cue) {
-  for (RememberingAverage* average : averages_of(*this)) {
-    if (average != nullptr) {
-      average->average().take(cue);
-    }
+void MotionHypotheses::restart_cascade() {
+  if (CascadedModel* cascade = structures_.cascaded(); cascade != nullptr) {
+    cascade->restart();
+    cascade->refresh();
   }
 }
 
 void MotionHypotheses::start(const DrivenSegment& segment, bool wheels_known) {
-  if (cascaded_ && wheels_known && !tried(Structure::Cascaded)) {
-    join_cascade();
-  }
+  join_cascade(wheels_known);
   segment_ = segment;
-  to_predict_ = tried_.keys();
+  to_predict_ = structures_.tried();
   predicted_.clear();
   std::ranges::for_each(updates_, [](StructureUpdate& update) { update.refitted = false; });
 }
@@ -166,19 +45,17 @@ bool MotionHypotheses::advance() {
     return false;
   }
   if (predicted_.size() == to_predict_.size()) {
-    bank_.see(present(segment_).inputs, present(segment_).segment);
-    update_weights();
-    drop_refuted();
-    ++count_;
-    segment_.reset();
+    end_segment();
     return false;
   }
+  const DrivenSegment& driven = present(segment_);
   const Structure structure = to_predict_[predicted_.size()];
-  RememberingAverage* average = average_of(structure);
+  RememberingAverage* average = structures_.average_of(structure);
   if (average == nullptr) {
-    predicted_.push_back(predict(structure));
+    predicted_.push_back(structures_.score(structure, driven));
+    updates_[update_of(structure)].nis = predicted_.back().nis;
   } else if (!averaging_) {
-    average->start(present(segment_).inputs, present(segment_).segment);
+    average->start(driven.inputs, driven.segment);
     averaging_ = true;
   } else if (!average->advance()) {
     predicted_.push_back(learned(average->average(), structure));
@@ -187,114 +64,71 @@ bool MotionHypotheses::advance() {
   return true;
 }
 
-/// What learns the segments themselves.
-RememberingAverage* MotionHypotheses::average_of(Structure structure) {
-  if (structure == Structure::Joint) {
-    return &joint_;
-  }
-  return structure == Structure::Direct && direct_ ? &*direct_ : nullptr;
-}
-
-/// Predicts the segment by the estimate from elsewhere, or not at all.
-ScoredSegment MotionHypotheses::predict(Structure structure) {
-  const Estimate nothing{Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
-  const ScoredSegment scored =
-      structure == Structure::Cascaded && cascaded_
-          ? cascaded_->predict(present(segment_))
-          : baseline_.score(baseline_model(), nothing, present(segment_).inputs, present(segment_).segment);
-  updates_[index(structure)].nis = scored.nis;
-  return scored;
-}
-
 ScoredSegment MotionHypotheses::learned(const ModelAverage& average, Structure structure) {
   const IekfUpdate& update = average.update();
-  updates_[index(structure)] = {
+  updates_[update_of(structure)] = {
       .nis = update.nis, .weight = update.weight, .change = average.change(), .refitted = average.refitted()};
   return {update.innovation, update.innovation_covariance, update.nis};
 }
 
-/// By their errors, as bases are, under what those miss that could explain most.
-void MotionHypotheses::update_weights() {
-  if (cascaded_ && tried(Structure::Cascaded)) {
-    cascaded_->refresh();
-    updates_[index(Structure::Cascaded)].change = cascaded_->change();
-    updates_[index(Structure::Cascaded)].refitted = cascaded_->refitted();
+void MotionHypotheses::end_segment() {
+  bank_.see(present(segment_).inputs, present(segment_).segment);
+  if (CascadedModel* cascade = structures_.cascaded(); cascade != nullptr && structures_.tried(Structure::Cascaded)) {
+    cascade->refresh();
+    updates_[update_of(Structure::Cascaded)].change = cascade->change();
+    updates_[update_of(Structure::Cascaded)].refitted = cascade->refitted();
   }
-  Eigen::VectorXd full = tried_.weights();
-  for (std::size_t i = 0; i < tried_.size(); ++i) {
-    full[static_cast<Eigen::Index>(i)] *= is_simple(tried_[i]) ? 0.0 : 1.0;
-  }
-  WeightingSettings weighting = settings_.average.weighting;
-  weighting.learning_rate *= kPatience;
-  tried_.learn(common_log_scores(full / full.sum(), predicted_), weighting);
+  structures_.learn(predicted_);
+  ++count_;
+  segment_.reset();
 }
 
-/// Simpler structures that predict far worse than another.
-void MotionHypotheses::drop_refuted() {
-  std::vector<std::size_t> left;
-  for (std::size_t i = 0; i < tried_.size(); ++i) {
-    const double behind = tried_.evidence().maxCoeff() - tried_.evidence()[static_cast<Eigen::Index>(i)];
-    if (!is_simple(tried_[i]) || !(behind > kRefuted)) {
-      left.push_back(i);
+void MotionHypotheses::start_run() {
+  if (CascadedModel* cascade = structures_.cascaded(); cascade != nullptr) {
+    cascade->restart();
+  }
+  if (structures_.settings().average.surfaces.remember) {
+    for (RememberingAverage* average : structures_.averages()) {
+      if (average != nullptr) {
+        average->forget_recent();
+      }
     }
   }
-  tried_ = tried_.chosen(left);
-  tried_.normalise();
 }
 
-std::shared_ptr<const MotionPosterior> MotionHypotheses::posterior_of(const ModelAverage& average,
-                                                                      Structure structure) const {
-  const AverageState state = average.state();
-  Eigen::VectorXd weights = state.weights;
-  if (structure == Structure::Direct) {
-    weights = Eigen::VectorXd::Zero(std::ssize(settings_.bases));
-    weights(direct_bases_) = state.weights;
-  }
-  return std::make_shared<const MotionPosterior>(MotionPosterior{.model = average.model(),
-                                                                 .estimate = state.estimate,
-                                                                 .prior_std = state.prior_std,
-                                                                 .noise = settings_.filter.noise.shape,
-                                                                 .noise_scale = state.noise_scale,
-                                                                 .variance_ratio = state.variance_ratio,
-                                                                 .basis_weights = weights,
-                                                                 .structure = structure});
+void MotionHypotheses::start_drive(const DisturbanceModel& law, const DriveStart& start) {
+  bank_.start_drive(learned_slip(structures_, law), start);
+  restart_cascade();
 }
 
-std::shared_ptr<const MotionPosterior> MotionHypotheses::of(Structure structure) const {
-  if (!tried(structure)) {
-    return nullptr;
+void MotionHypotheses::begin_with(const KnownBefore& known, double segment_length, bool wheels_known) {
+  if (count_ > 0 || known.surfaces.empty()) {
+    throw std::invalid_argument("a learner begins with surfaces before it has learned anything");
   }
-  switch (structure) {
-    case Structure::Joint:
-      return posterior_of(joint_.average(), structure);
-    case Structure::Direct:
-      return posterior_of(present(direct_).average(), structure);
-    case Structure::Cascaded:
-      return present(cascaded_).posterior();
-    default:
-      break;
+  const std::size_t place = average_like(known.model);
+  if (structures_.averages()[place] == nullptr) {
+    throw std::invalid_argument("the surfaces were learned by a structure that is not tried");
   }
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(std::ssize(settings_.bases));
-  for (Eigen::Index i = 0; i < weights.size(); ++i) {
-    weights[i] = settings_.bases[static_cast<std::size_t>(i)].name() == "none" ? 1.0 : 0.0;
-  }
-  const Eigen::VectorXd none(0);
-  return std::make_shared<const MotionPosterior>(MotionPosterior{.model = baseline_model(),
-                                                                 .estimate = {none, Eigen::MatrixXd(0, 0)},
-                                                                 .prior_std = none,
-                                                                 .noise = settings_.filter.noise.shape,
-                                                                 .noise_scale = baseline_.noise_scale(),
-                                                                 .variance_ratio = none,
-                                                                 .basis_weights = weights,
-                                                                 .structure = Structure::Baseline});
+  join_cascade(wheels_known);
+  know_robot(structures_, known.model);
+  std::vector<Surface> surfaces = completed(structures_, known);
+  begin_on(structures_, surfaces, segment_length);
+  restart_cascade();
+  bank_.know(std::move(surfaces), known.labels);
+  constexpr std::array kOwn{Structure::Joint, Structure::Direct, Structure::Cascaded};
+  begun_with_ = kOwn[place];
+  structures_.favour(kOwn[place]);
 }
 
-std::shared_ptr<const MotionPosterior> MotionHypotheses::posterior() const { return of(tried_[tried_.heaviest()]); }
+std::vector<std::string> MotionHypotheses::add_surfaces(const DisturbanceModel& law, const KnownBefore& other) {
+  std::vector<Surface> surfaces = completed(structures_, other);
+  return bank_.add(learned_slip(structures_, law), std::move(surfaces));
+}
 
-std::shared_ptr<const MotionPosterior> MotionHypotheses::slip_posterior() const {
-  std::array<double, kStructures> slipping = weights();
-  slipping[index(Structure::Baseline)] = 0.0;
-  return of(static_cast<Structure>(std::ranges::max_element(slipping) - slipping.begin()));
+SurfaceBank MotionHypotheses::surfaces_now(const DisturbanceModel& law) const {
+  MotionHypotheses now = *this;
+  now.bank_.keep_present(learned_slip(now.structures_, law));
+  return now.bank_;
 }
 
 }  // namespace slipwise

@@ -100,8 +100,8 @@ void SurfaceBank::merge_confounded(const LearnedSlip& learned, std::size_t place
     const bool named_apart =
         surfaces_.present() && !SurfaceList::numbered(own.name) && !SurfaceList::numbered(other.name);
     if (i != place && !named_apart && known(own) && known(other) &&
-        leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) <=
-            told_apart) {
+        leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]),
+                     learned.law) <= told_apart) {
       surfaces_.merge(std::min(i, place), std::max(i, place));
       return;
     }
@@ -117,8 +117,7 @@ void SurfaceBank::know(std::vector<Surface> surfaces, const LabelCounts& labels)
   labels_.know(labels);
 }
 
-std::vector<std::string> SurfaceBank::add(const LearnedSlip& learned,
-                                          std::vector<Surface> others) {
+std::vector<std::string> SurfaceBank::add(const LearnedSlip& learned, std::vector<Surface> others) {
   leader_ = trial_ ? leader_ : learned.leader;
   std::vector<std::string> names;
   for (Surface& other : others) {
@@ -129,8 +128,7 @@ std::vector<std::string> SurfaceBank::add(const LearnedSlip& learned,
   return names;
 }
 
-void SurfaceBank::open(const LearnedSlip& learned, std::vector<SurfaceCandidate> candidates,
-                       double since) {
+void SurfaceBank::open(const LearnedSlip& learned, std::vector<SurfaceCandidate> candidates, double since) {
   labels_.weigh(candidates, surfaces_);
   heard_.begin_trial(candidates.size());
   mark_parting(learned, since);
@@ -140,7 +138,7 @@ void SurfaceBank::open(const LearnedSlip& learned, std::vector<SurfaceCandidate>
     const auto& memory = surface.memories[leader_];
     known.push_back(memory ? *memory : leader.average().remember());
   }
-  trial_.emplace(std::move(candidates), known, leader, law, since);
+  trial_.emplace(std::move(candidates), known, leader, learned.law, since);
 }
 
 void SurfaceBank::start_drive(const LearnedSlip& learned, const DriveStart& start) {
@@ -239,8 +237,7 @@ void SurfaceBank::consider(const LearnedSlip& learned) {
   }
   if (surfaces_.size() > (surfaces_.present() ? 1 : 0)) {
     labels_.say("");
-    open(learned, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_),
-         *changed_since);
+    open(learned, candidates_of_change(surfaces_.size(), surfaces_.present(), doubted, settings_), *changed_since);
     return;
   }
   mark_parting(learned, *changed_since);

@@ -29,7 +29,7 @@ void LimitEvidence::keep_twists(WheelSegment segment) { keep_last(twists_, std::
 
 void LimitEvidence::keep(const DrivenSegment& segment) { keep_last(commands_, segment, kMostCommandSegments); }
 
-std::optional<ActuatorLimits> LimitEvidence::find(const MotionHypotheses& learned, const MotionPosterior& kept,
+std::optional<ActuatorLimits> LimitEvidence::find(const Structures& learned, const MotionPosterior& kept,
                                                   const HypothesisSettings& settings, double wheel_separation) const {
   const auto cascaded = learned.of(Structure::Cascaded);
   const std::vector<DrivenSegment> segments(commands_.begin(), commands_.end());

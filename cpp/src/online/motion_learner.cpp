@@ -155,7 +155,7 @@ void MotionLearner::forget(double fraction) {
     throw std::invalid_argument("what is forgotten is a fraction between 0 and 1, got " + std::to_string(fraction));
   }
   learner_.change(stream_, [fraction](MotionHypotheses& hypotheses, const DisturbanceModel& /*law*/) {
-    hypotheses.take(ForgetSlip{fraction});
+    hypotheses.structures().take(ForgetSlip{fraction});
   });
 }
 
@@ -175,9 +175,9 @@ void MotionLearner::cue_surface(const std::string& label) {
   }
   learner_.change(stream_, [&](MotionHypotheses& hypotheses, const DisturbanceModel& law) {
     if (remember) {
-      hypotheses.bank().cue(hypotheses.learned_slip(law), label);
+      hypotheses.bank().cue(learned_slip(hypotheses.structures(), law), label);
     } else {
-      hypotheses.take(ChangeExpected{});
+      hypotheses.structures().take(ChangeExpected{});
     }
   });
 }
@@ -185,7 +185,7 @@ void MotionLearner::cue_surface(const std::string& label) {
 void MotionLearner::cue_terrain(const TerrainAnswer& answer) {
   check_answer(answer);
   learner_.change(stream_, [&](MotionHypotheses& hypotheses, const DisturbanceModel& law) {
-    hypotheses.bank().hear(hypotheses.learned_slip(law), answer);
+    hypotheses.bank().hear(learned_slip(hypotheses.structures(), law), answer);
   });
 }
 
@@ -258,7 +258,7 @@ LearnedModel MotionLearner::model() const {
   LearnedModel learned{.known = known,
                        .students = learner.errors().nominal(known.motion->structure),
                        .held_out = learner.errors().predictions(),
-                       .weights = learner.hypotheses().weights(),
+                       .weights = learner.hypotheses().structures().weights(),
                        .range = stream.range(),
                        .rates = stream.rates(),
                        .held = stream.held(),

@@ -20,7 +20,7 @@ std::shared_ptr<const MotionPosterior> learned(std::span<const DrivenSegment> se
     while (hypotheses.advance()) {
     }
   }
-  return hypotheses.posterior();
+  return hypotheses.structures().posterior();
 }
 
 /// Limits act on an actuator, whose lag and delay are learned behind them.

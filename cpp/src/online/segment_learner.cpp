@@ -118,7 +118,7 @@ void SegmentLearner::work_evenly(const SegmentStream& stream, double passed) {
   int pieces = pieces_now(waiting_, stream.newest(), passed);
   while (pieces-- > 0 && work(stream)) {
   }
-  for (int slice = 0; slice < kSlices && hypotheses_.refit_slice(); ++slice) {
+  for (int slice = 0; slice < kSlices && hypotheses_.structures().refit_slice(); ++slice) {
   }
 }
 
@@ -155,9 +155,12 @@ bool SegmentLearner::work(const SegmentStream& stream) {
 
 /// A piece of what waits longest; whether there is more of it.
 bool SegmentLearner::learn_front(const SegmentStream& stream) {
+  CascadedModel* const cascade = hypotheses_.structures().cascaded();
   return std::visit(
       Takes{[&](WheelSegment& wheels) {
-              hypotheses_.learn_actuator(wheels);
+              if (cascade != nullptr) {
+                cascade->learn_actuator(wheels);
+              }
               limits_.keep_wheels(std::move(wheels));
               return false;
             },
@@ -166,11 +169,11 @@ bool SegmentLearner::learn_front(const SegmentStream& stream) {
               return false;
             },
             [&](const SlipSegment& slip) {
-              if (!started_) {
-                hypotheses_.start_slip(slip.driven);
+              if (!started_ && cascade != nullptr) {
+                cascade->start_slip(slip.driven);
                 return true;
               }
-              const bool more = hypotheses_.advance_slip();
+              const bool more = cascade != nullptr && cascade->advance_slip();
               if (!more) {
                 consider_surfaces(slip.driven.segment.end);
               }
@@ -223,7 +226,7 @@ void SegmentLearner::learn_disturbance(const DrivenSegment& segment) {
     const auto& before = known_.newest().slip;
     const SlipNow& slip = known_.slip_after(disturbance_, before, known_.segments_until(segment.segment.start));
     disturbance_.learn(*before, slip, segment);
-    hypotheses_.take(SlipLasts{correlation_time(disturbance_.law(), kUsualCorrelationTime)});
+    hypotheses_.structures().take(SlipLasts{correlation_time(disturbance_.law(), kUsualCorrelationTime)});
   }
 }
 
@@ -236,10 +239,11 @@ void SegmentLearner::publish(const DrivenSegment& segment, double wheel_interval
   seconds_ += end - segment.segment.start;
   LearnerEvent event{.kind = LearnerEvent::Kind::SegmentLearned, .t = end};
   event.updates = hypotheses_.updates();
-  event.weights = hypotheses_.weights();
+  event.weights = hypotheses_.structures().weights();
   event.surfaces = hypotheses_.bank().probabilities();
   for (std::size_t i = 0; i < kStructures; ++i) {
-    event.posteriors[i] = supported(hypotheses_.of(static_cast<Structure>(i)), wheel_interval, hypotheses_.count());
+    event.posteriors[i] =
+        supported(hypotheses_.structures().of(static_cast<Structure>(i)), wheel_interval, hypotheses_.count());
   }
   const bool refitted = std::ranges::any_of(event.updates, &StructureUpdate::refitted);
   const auto present = static_cast<std::size_t>(known_.newest().slip->structure);
@@ -254,7 +258,7 @@ void SegmentLearner::publish(const DrivenSegment& segment, double wheel_interval
 }
 
 void SegmentLearner::consider_surfaces(double t) {
-  hypotheses_.bank().consider(hypotheses_.learned_slip(disturbance_.law()));
+  hypotheses_.bank().consider(learned_slip(hypotheses_.structures(), disturbance_.law()));
   note_surfaces(log_.run(), t);
 }
 
@@ -267,13 +271,14 @@ void SegmentLearner::note_change(std::size_t run, double t) {
 }
 
 Knowledge SegmentLearner::now_known(double until) const {
-  const auto motion = hypotheses_.posterior();  // what predicts best may count the lateness of poses as a delay
+  const Structures& structures = hypotheses_.structures();
+  const auto motion = structures.posterior();  // what predicts best may count the lateness of poses as a delay
   return {
       .until = until,
       .motion = motion,
-      .slip = motion->structure == Structure::Baseline ? hypotheses_.slip_posterior() : motion,
+      .slip = motion->structure == Structure::Baseline ? structures.slip_posterior() : motion,
       .disturbance = std::make_shared<const DisturbanceFilter>(disturbance_),
-      .clock = motion->model.learned().clock_offset ? motion : hypotheses_.of(Structure::Cascaded),
+      .clock = motion->model.learned().clock_offset ? motion : structures.of(Structure::Cascaded),
       .sources = settings_.stream.sources.empty() ? nullptr : std::make_shared<const SourceNoise>(sources_.noise())};
 }
 
@@ -353,7 +358,7 @@ SlipNow SegmentLearner::slip_at_newest(const SegmentStream& stream, const Knowle
 }
 
 std::optional<ActuatorLimits> SegmentLearner::find_limits(double wheel_separation) const {
-  return limits_.find(hypotheses_, *known_.newest().motion, settings_.hypotheses, wheel_separation);
+  return limits_.find(hypotheses_.structures(), *known_.newest().motion, settings_.hypotheses, wheel_separation);
 }
 
 /// Against what a learner of the same settings begins with, and what a prediction looks up without asking.

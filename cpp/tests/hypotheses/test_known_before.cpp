@@ -22,7 +22,7 @@ KnownBefore handed_out(const MotionLearner& learner) {
   KnownBefore known{.model = *learner.model().known.slip, .surfaces = {}, .labels = {}};
   const SurfaceBank bank = learner.surfaces();
   for (const Surface& surface : bank.surfaces()) {
-    const auto there = learner.learned().hypotheses().on_surface(surface, Structure::Joint);
+    const auto there = slip_on(learner.learned().hypotheses().structures(), surface, Structure::Joint);
     REQUIRE(there);
     known.surfaces.push_back({.facts = surface, .memory = there->memory});
   }
@@ -40,7 +40,7 @@ TEST_CASE("what is known of the slip now is said without a memory of surfaces, t
   push(other, drive_on(0.5, 11, kVisit, 0.0));
   other.end_run();
   CHECK(other.surfaces().surfaces().empty());
-  const auto now = other.learned().hypotheses().slip_now(Structure::Joint);
+  const auto now = slip_now(other.learned().hypotheses().structures(), Structure::Joint);
   REQUIRE(now);
   CHECK(now->memory.bases.size() == now->memory.memory.slips.size());
   const MotionPosterior known = *other.model().known.slip;
@@ -85,8 +85,8 @@ double off_after_handing_over(const LearnerSettings& settings) {
   REQUIRE(after.size() == 2);
   double off = 0.0;
   for (std::size_t i = 0; i < 2; ++i) {
-    const AverageState was = other.learned().hypotheses().on_surface(before[i], Structure::Joint)->state;
-    const AverageState is = begins.learned().hypotheses().on_surface(after[i], Structure::Joint)->state;
+    const AverageState was = slip_on(other.learned().hypotheses().structures(), before[i], Structure::Joint)->state;
+    const AverageState is = slip_on(begins.learned().hypotheses().structures(), after[i], Structure::Joint)->state;
     const Eigen::VectorXd std = was.estimate.covariance.diagonal().cwiseSqrt();
     off = std::max(off, (is.estimate.mean - was.estimate.mean).cwiseQuotient(std).cwiseAbs().maxCoeff());
     CHECK(is.noise_scale.isApprox(was.noise_scale, 1e-9));
@@ -115,12 +115,12 @@ TEST_CASE("of two memories, surfaces that cannot be told apart become one") {
   REQUIRE(events.size() == 1);
   CHECK(events[0].event.name == "surface 2");
   CHECK(events[0].event.other == "surface 1 (2)");
-  const double once = first.learned()
-                          .hypotheses()
-                          .on_surface(first.surfaces().surfaces()[1], Structure::Joint)
-                          ->state.estimate.covariance.trace();
-  CHECK(begins.learned().hypotheses().on_surface(surfaces[1], Structure::Joint)->state.estimate.covariance.trace() <
-        once);
+  const double once =
+      slip_on(first.learned().hypotheses().structures(), first.surfaces().surfaces()[1], Structure::Joint)
+
+          ->state.estimate.covariance.trace();
+  CHECK(slip_on(begins.learned().hypotheses().structures(), surfaces[1], Structure::Joint)
+            ->state.estimate.covariance.trace() < once);
 }
 
 TEST_CASE("a learner begins with surfaces before it has learned anything, or not at all") {

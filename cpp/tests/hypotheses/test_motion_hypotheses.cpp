@@ -21,7 +21,7 @@ HypothesisSettings few_bases() {
 }
 
 double weight(const MotionHypotheses& all, Structure structure) {
-  return all.weights().at(static_cast<std::size_t>(structure));
+  return all.structures().weights().at(static_cast<std::size_t>(structure));
 }
 
 /// Learns a drive of a robot that loses a part of its turns, behind lags [s] and delays of 0.1 s, or without any.
@@ -37,7 +37,7 @@ void learn(MotionHypotheses& all, double yaw_slip, double lag, bool wheels_known
     all.start({.inputs = drive.inputs, .segment = segment, .known_at = segment.end}, wheels_known);
     while (all.advance()) {
     }
-    const auto& weights = all.weights();
+    const auto& weights = all.structures().weights();
     REQUIRE(std::accumulate(weights.begin(), weights.end(), 0.0) == doctest::Approx(1.0));
   }
 }
@@ -46,29 +46,29 @@ TEST_CASE("a robot that does what it is commanded is explained by the kinematic 
   MotionHypotheses all(few_bases());
   learn(all, 0.0, 0.0);
   CHECK(all.count() == 60);
-  CHECK(all.posterior()->structure == Structure::Baseline);
-  CHECK(all.slip_posterior()->structure != Structure::Baseline);
+  CHECK(all.structures().posterior()->structure == Structure::Baseline);
+  CHECK(all.structures().slip_posterior()->structure != Structure::Baseline);
 }
 
 TEST_CASE("a robot that lags and slips refutes what has neither, for good") {
   MotionHypotheses all(few_bases());
   learn(all, -0.3, 0.8);
-  CHECK(all.posterior()->structure == Structure::Joint);
+  CHECK(all.structures().posterior()->structure == Structure::Joint);
   for (const Structure simple : {Structure::Baseline, Structure::Direct}) {
     CHECK(weight(all, simple) == 0.0);
-    CHECK(all.of(simple) == nullptr);
+    CHECK(all.structures().of(simple) == nullptr);
   }
   learn(all, 0.0, 0.0);
-  CHECK(all.of(Structure::Baseline) == nullptr);
+  CHECK(all.structures().of(Structure::Baseline) == nullptr);
 }
 
 TEST_CASE("the cascade is tried once wheel speeds come, with the weight that it would have had") {
   MotionHypotheses all(few_bases());
-  CHECK(all.of(Structure::Cascaded) == nullptr);
+  CHECK(all.structures().of(Structure::Cascaded) == nullptr);
   all.start({.inputs = {}, .segment = {.start = 0.0, .end = 1.0}, .known_at = 1.0}, true);
-  REQUIRE(all.of(Structure::Cascaded) != nullptr);
+  REQUIRE(all.structures().of(Structure::Cascaded) != nullptr);
   CHECK(weight(all, Structure::Cascaded) == doctest::Approx(weight(all, Structure::Joint)));
-  const auto& weights = all.weights();
+  const auto& weights = all.structures().weights();
   CHECK(std::accumulate(weights.begin(), weights.end(), 0.0) == doctest::Approx(1.0));
 }
 
@@ -78,9 +78,9 @@ TEST_CASE("from wheel speeds there is neither a lag nor a cascade to try") {
   MotionHypotheses all(settings);
   CHECK(weight(all, Structure::Joint) + weight(all, Structure::Baseline) == doctest::Approx(1.0));
   learn(all, -0.3, 0.0, true);
-  CHECK(all.of(Structure::Cascaded) == nullptr);
-  CHECK(all.posterior()->structure == Structure::Joint);
-  CHECK(all.posterior()->estimate.mean[1] == doctest::Approx(-0.3).epsilon(0.1));
+  CHECK(all.structures().of(Structure::Cascaded) == nullptr);
+  CHECK(all.structures().posterior()->structure == Structure::Joint);
+  CHECK(all.structures().posterior()->estimate.mean[1] == doctest::Approx(-0.3).epsilon(0.1));
 }
 
 }  // namespace

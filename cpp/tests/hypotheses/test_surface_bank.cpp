@@ -29,7 +29,7 @@ struct Known {
     }
     tests::drive_on_surface(average, named.front().second, 75);
   }
-  LearnedSlip slip() { return {.averages = {&average, nullptr, nullptr}}; }
+  LearnedSlip slip() { return {.averages = {&average, nullptr, nullptr}, .leader = kJoint, .law = kWhiteSlip}; }
 };
 
 SurfaceSettings remembering() {
@@ -78,8 +78,7 @@ TEST_CASE("the surface that is driven on is recalled, its visit counted, and a l
   REQUIRE(events.size() == 1);
   CHECK(events.front().kind == SurfaceEvent::Kind::Recalled);
   CHECK(bank.take_events().empty());
-  bank.hear(known.slip(),
-            {.classes = {"sand", "ice"}, .probability = Eigen::Vector2d(0.9, 0.1), .unknown = 0.0});
+  bank.hear(known.slip(), {.classes = {"sand", "ice"}, .probability = Eigen::Vector2d(0.9, 0.1), .unknown = 0.0});
   CHECK(bank.probabilities().size() == 2);  // against what is like it, which an answer that says the same does not end
 }
 

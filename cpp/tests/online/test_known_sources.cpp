@@ -73,12 +73,12 @@ TEST_CASE("a worse source that covers the same time changes nothing of what is l
     const MotionLearner alone = learned(learner_settings(from_commands), run);
     const MotionLearner both = learned(two_sources(from_commands), with_second(run, false));
     for (std::size_t i = 0; i < kStructures; ++i) {
-      CHECK(both.learned().hypotheses().weights()[i] ==
-            doctest::Approx(alone.learned().hypotheses().weights()[i]).epsilon(1e-6));
+      CHECK(both.learned().hypotheses().structures().weights()[i] ==
+            doctest::Approx(alone.learned().hypotheses().structures().weights()[i]).epsilon(1e-6));
     }
     for (const Structure structure : {Structure::Joint, Structure::Cascaded, Structure::Direct}) {
-      const auto expected = alone.learned().hypotheses().of(structure);
-      const auto found = both.learned().hypotheses().of(structure);
+      const auto expected = alone.learned().hypotheses().structures().of(structure);
+      const auto found = both.learned().hypotheses().structures().of(structure);
       REQUIRE((found == nullptr) == (expected == nullptr));
       CHECK((found == nullptr || found->estimate.mean.isApprox(expected->estimate.mean, 1e-9)));
     }

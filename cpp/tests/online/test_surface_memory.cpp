@@ -111,7 +111,7 @@ TEST_CASE("the first change within a drive opens a second surface, and the first
   const SurfaceBank bank = learner.surfaces();
   REQUIRE(bank.surfaces().size() == 2);
   const auto yaw_slip = [&](const Surface& surface) {
-    const auto known_there = learner.learned().hypotheses().on_surface(surface, Structure::Joint);
+    const auto known_there = slip_on(learner.learned().hypotheses().structures(), surface, Structure::Joint);
     const auto known = learner.model().known.motion;
     double value = 0.0;
     for (Eigen::Index i = 0; i < known->model.slip_size(); ++i) {

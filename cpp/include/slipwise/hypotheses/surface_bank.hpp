@@ -23,8 +23,8 @@ using Averages = std::array<RememberingAverage*, kAverages>;
 /// What a learner knows of slip: by its averages, of which null are those that are not tried.
 struct LearnedSlip {
   Averages averages;
-  std::size_t leader = kJoint;        ///< the average that tells surfaces apart soonest
-  DisturbanceModel law = kWhiteSlip;  ///< of the slip disturbance
+  std::size_t leader;    ///< the average that tells surfaces apart soonest
+  DisturbanceModel law;  ///< of the slip disturbance
 
   /// Calls `use` with the place and the average of each that is tried.
   template <class Use>
@@ -89,8 +89,7 @@ class SurfaceBank {
   }
 
  private:
-  void open(const LearnedSlip& learned, std::vector<SurfaceCandidate> candidates,
-            double since);
+  void open(const LearnedSlip& learned, std::vector<SurfaceCandidate> candidates, double since);
   void settle(const LearnedSlip& learned, bool at_once);
   void suspect(const LearnedSlip& learned);
   void doubt();

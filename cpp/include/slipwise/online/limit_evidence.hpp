@@ -5,7 +5,7 @@
 #include <deque>
 #include <optional>
 
-#include "slipwise/hypotheses/motion_hypotheses.hpp"
+#include "slipwise/hypotheses/structures.hpp"
 #include "slipwise/online/actuator_limits.hpp"
 
 namespace slipwise {
@@ -19,7 +19,7 @@ class LimitEvidence {
   /// By which limits are judged.
   void keep(const DrivenSegment& segment);
   /// Limits behind which what was kept is predicted better, where there is enough of it.
-  std::optional<ActuatorLimits> find(const MotionHypotheses& learned, const MotionPosterior& kept,
+  std::optional<ActuatorLimits> find(const Structures& learned, const MotionPosterior& kept,
                                      const HypothesisSettings& settings, double wheel_separation) const;
 
   /// Names what is saved.
