@@ -14,7 +14,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 HEADERS = ("cpp/include", "packages/slipwise-thesis/cpp/include")
-MODULES = ("python/slipwise", "packages/slipwise-sim/slipwise_sim", "packages/slipwise-thesis/slipwise_thesis")
+MODULES = (
+    "python/slipwise",
+    "packages/slipwise-sim/slipwise_sim",
+    "packages/slipwise-thesis/slipwise_thesis",
+)
 
 MOST_METHODS = 12
 MOST_MEMBERS = 12
@@ -75,7 +79,7 @@ def declarations(lines: list[str]) -> Iterator[tuple[bool, str]]:
 
 
 def name_of_method(text: str, owner: str) -> str | None:
-    """Return the name of the method that `text` declares in class `owner`; None for what is none, or made for all."""
+    """Return the name of the method that `text` declares in class `owner`; None for constructors and operators."""
     head = re.sub(r"<[^<>]*>", "", re.sub(r"<[^<>]*>", "", text)).split("{")[0].split(" = ")[0]
     if "(" not in head or "operator" in head:
         return None
@@ -129,25 +133,31 @@ def key_of(path: str, name: str) -> str:
 
 
 def faults_of(path: str, name: str, methods: int, members: int) -> list[str]:
-    """Return what is wrong with the size of a class; a class of few methods is data, which may have many members."""
+    """Return what is wrong with the size of a class; one of few methods is data, with as many members as it has."""
     size = (methods, members)
     large = methods > MOST_METHODS or (members > MOST_MEMBERS and methods > FEW_METHODS)
     most = LARGER.get(key_of(path, name))
     if most is None:
-        limits = f"{MOST_METHODS} and {MOST_MEMBERS} are the limit"
-        wording = f"{path}: {name} has {methods} public methods and {members} members; {limits}, split it by concept"
-        return [wording] if large else []
+        has = f"{path}: {name} has {methods} public methods and {members} members"
+        return (
+            [f"{has}; split it by concept, {MOST_METHODS} and {MOST_MEMBERS} are the limit"] if large else []
+        )
     if size == most and large:
         return []
     wrong = "larger" if methods > most[0] or members > most[1] else "smaller, which is to be written there"
-    return [f"{path}: {name} has {methods} public methods and {members} members, {most} in LARGER: it is {wrong}"]
+    return [
+        f"{path}: {name} has {methods} public methods and {members} members, {most} in LARGER: it is {wrong}"
+    ]
 
 
 def main(root: Path) -> int:
     """Print the faults; return 1 if there are any."""
     found = list(classes(root))
     faults = [fault for each in found for fault in faults_of(*each)]
-    faults += [f"LARGER: there is no {key}" for key in LARGER.keys() - {key_of(path, name) for path, name, _, _ in found}]
+    faults += [
+        f"LARGER: there is no {key}"
+        for key in LARGER.keys() - {key_of(path, name) for path, name, _, _ in found}
+    ]
     print("\n".join(faults) if faults else "classes: no fault")
     return 1 if faults else 0
 

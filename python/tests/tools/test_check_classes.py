@@ -33,14 +33,14 @@ class Small {
 
 }  // namespace slipwise
 """
-MODULE = '''class Learner:
+MODULE = """class Learner:
     rate: float
     _kept: int = 0
 
     def learn(self) -> None: ...
 
     def _slice(self) -> None: ...
-'''
+"""
 
 
 def test_public_methods_are_counted_by_name_and_members_by_declaration() -> None:
@@ -56,7 +56,9 @@ def test_a_class_of_data_may_have_many_members_and_one_of_methods_may_not() -> N
 
 
 @pytest.mark.parametrize(("more", "said"), [(1, "larger"), (-1, "smaller")])
-def test_a_class_that_was_large_neither_grows_nor_keeps_a_number_that_it_no_longer_needs(more: int, said: str) -> None:
+def test_a_class_that_was_large_neither_grows_nor_keeps_a_number_that_it_no_longer_needs(
+    more: int, said: str
+) -> None:
     key, (methods, members) = next(iter(LARGER.items()))
     file, name = key.split()
     assert faults_of(file, name, methods, members) == []
