@@ -79,7 +79,7 @@ def declarations(lines: list[str]) -> Iterator[tuple[bool, str]]:
 
 
 def name_of_method(text: str, owner: str) -> str | None:
-    """Return the name of the method that `text` declares in class `owner`; None for constructors and operators."""
+    """Return the method that `text` declares in class `owner`; None for constructors and operators."""
     head = re.sub(r"<[^<>]*>", "", re.sub(r"<[^<>]*>", "", text)).split("{")[0].split(" = ")[0]
     if "(" not in head or "operator" in head:
         return None
@@ -133,12 +133,12 @@ def key_of(path: str, name: str) -> str:
 
 
 def faults_of(path: str, name: str, methods: int, members: int) -> list[str]:
-    """Return what is wrong with the size of a class; one of few methods is data, with as many members as it has."""
+    """Return what is wrong with the size of a class; data with few methods may have many members."""
     size = (methods, members)
     large = methods > MOST_METHODS or (members > MOST_MEMBERS and methods > FEW_METHODS)
     most = LARGER.get(key_of(path, name))
     if most is None:
-        has = f"{path}: {name} has {methods} public methods and {members} members"
+        has = f"{path}: {name} has {methods} public methods and {members} members; split it by concept"
         return (
             [f"{has}; split it by concept, {MOST_METHODS} and {MOST_MEMBERS} are the limit"] if large else []
         )
