@@ -125,10 +125,4 @@ std::vector<std::string> MotionHypotheses::add_surfaces(const DisturbanceModel& 
   return bank_.add(learned_slip(structures_, law), std::move(surfaces));
 }
 
-SurfaceBank MotionHypotheses::surfaces_now(const DisturbanceModel& law) const {
-  MotionHypotheses now = *this;
-  now.bank_.keep_present(learned_slip(now.structures_, law));
-  return now.bank_;
-}
-
 }  // namespace slipwise

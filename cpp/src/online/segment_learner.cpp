@@ -357,6 +357,12 @@ SlipNow SegmentLearner::slip_at_newest(const SegmentStream& stream, const Knowle
   return slip;
 }
 
+SurfaceBank SegmentLearner::surfaces() const {
+  MotionHypotheses now = hypotheses_;
+  now.bank().keep_present(learned_slip(now.structures(), disturbance_.law()));
+  return now.bank();
+}
+
 std::optional<ActuatorLimits> SegmentLearner::find_limits(double wheel_separation) const {
   return limits_.find(hypotheses_.structures(), *known_.newest().motion, settings_.hypotheses, wheel_separation);
 }

@@ -34,8 +34,7 @@ double allowed(double std) { return std >= 0.0 ? std : std::numeric_limits<doubl
 SegmentStream::SegmentStream(const StreamSettings& settings)
     : drive_(settings),
       keep_(kLookBack + kSpare + settings.latency),
-      rates_(settings.sensor),
-      held_(settings.unknown_after),
+      range_(settings.sensor, settings.unknown_after),
       cutters_(settings),
       courses_(settings.sensor),
       others_(settings) {
@@ -73,8 +72,7 @@ void SegmentStream::end_run() {
   cutters_.finish(drive_, wheels_ever_, now_, output_);
   others_.finish_segments(now_, drive_, output_);
   cutters_.finish_targets(drive_, now_, output_);
-  rates_.restart();
-  held_.restart();
+  range_.restart();
   evidence_.end_run(drive_.wheels);
 }
 
@@ -111,9 +109,7 @@ bool SegmentStream::take_input(Stream stream, const InputSample& sample, const B
   InputBuffer& history = stream == Stream::Command ? drive_.commands : drive_.wheels;
   history.push(sample);
   if (&history == &drive_.inputs()) {
-    range_ = {std::min(range_[0], given.v), std::max(range_[1], given.v), std::min(range_[2], given.omega),
-              std::max(range_[3], given.omega)};
-    held_.push(sample);
+    range_.see(sample, given);
   }
   return true;
 }
@@ -155,7 +151,7 @@ bool SegmentStream::take(const Tilt& measured) {
     return false;
   }
   drive_.tilts.push(*tilt);
-  steepest_ = std::max({steepest_, std::abs(tilt->roll), std::abs(tilt->pitch)});
+  range_.see(*tilt);
   return true;
 }
 
@@ -295,7 +291,7 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
     drive_.readings.gyro().see_inputs(pose.t, drive_.gate_inputs(pose.t), settings().rules.still_speed);
     if (head(*timed, courses_)) {
       heading_ = timed->pose.yaw;
-      rates_.push(timed->pose);
+      range_.see(timed->pose);
       if (pose.position) {
         drive_.readings.gyro().see_course(timed->pose);
       }

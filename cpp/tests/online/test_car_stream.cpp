@@ -67,7 +67,7 @@ TEST_CASE("segments of a car get twists that its curves make, and the curves are
   CHECK(stream.drive().car_curves()->speed(0.6) == doctest::Approx(true_car().speed(0.6)).epsilon(0.08));
   CHECK(stream.drive().car_curves()->curvature(0.6) == doctest::Approx(0.9).epsilon(0.08));
   const auto throttle = std::ranges::max(run.commands, {}, [](const InputSample& each) { return each.twist.v; });
-  CHECK(stream.range()[1] == throttle.twist.v);
+  CHECK(stream.range().inputs()[1] == throttle.twist.v);
   int targets = 0;
   for (const StreamItem& item : stream.take_items()) {
     if (const auto* target = std::get_if<TargetSegment>(&item)) {

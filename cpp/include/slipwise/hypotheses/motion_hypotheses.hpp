@@ -48,8 +48,6 @@ class MotionHypotheses {
   /// The surfaces that the structures share.
   SurfaceBank& bank() { return bank_; }
   const SurfaceBank& bank() const { return bank_; }
-  /// The same as they are known now, the present one included.
-  SurfaceBank surfaces_now(const DisturbanceModel& law) const;
   /// How each structure took the last segment in.
   const std::array<StructureUpdate, kStructures>& updates() const { return updates_; }
   /// Segments learned.

@@ -46,10 +46,7 @@ struct LearnedModel {
   std::vector<StudentT> students;            ///< per horizon, nothing recent being known
   std::vector<HeldOutPredictions> held_out;  ///< per horizon, the last of them
   std::array<double, kStructures> weights;   ///< of the structures
-  std::array<double, 4> range;               ///< least and greatest speed, then yaw rate, of the inputs
-  MeasuredRates rates;                       ///< of the body, by the poses
-  std::array<double, 2> held;                ///< for how long inputs were held: speed, yaw rate [s]
-  double steepest;                           ///< greatest roll or pitch [rad]
+  DrivenRange range;                         ///< what was driven
   double seconds;                            ///< of all segments learned
   std::size_t segments;
   RejectionCounts rejected;

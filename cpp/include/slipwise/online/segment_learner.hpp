@@ -62,7 +62,7 @@ class SegmentLearner {
   /// Where slip is after all that was measured, of a drive with these limits.
   SlipNow slip_at_newest(const SegmentStream& stream, const Knowledge& known, const CommandLimits& limits);
   /// The surfaces that are remembered, the present one as it is known now.
-  SurfaceBank surfaces() const { return hypotheses_.surfaces_now(disturbance_.law()); }
+  SurfaceBank surfaces() const;
   /// Limits of the actuator, behind which what was driven of late is predicted better.
   std::optional<ActuatorLimits> find_limits(double wheel_separation) const;
   const MotionHypotheses& hypotheses() const { return hypotheses_; }

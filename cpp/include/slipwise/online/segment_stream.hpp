@@ -11,9 +11,8 @@
 
 #include "slipwise/linear/same_stamp.hpp"
 #include "slipwise/online/attitude_gate.hpp"
-#include "slipwise/online/body_rates.hpp"
 #include "slipwise/online/course_finder.hpp"
-#include "slipwise/online/hold_times.hpp"
+#include "slipwise/online/driven_range.hpp"
 #include "slipwise/online/measured_drive.hpp"
 #include "slipwise/online/measurement.hpp"
 #include "slipwise/online/motion_evidence.hpp"
@@ -60,14 +59,8 @@ class SegmentStream {
   /// What shows whether poses and inputs contradict each other.
   const MotionEvidence& evidence() const { return evidence_; }
   bool wheels_known() const { return wheels_ever_; }
-  /// Greatest roll or pitch [rad], of all runs.
-  double steepest() const { return steepest_; }
-  /// Least and greatest speed, then yaw rate, of the inputs that motion is predicted from, of all runs.
-  const std::array<double, 4>& range() const { return range_; }
-  /// What the poses show of the body's rates, of all runs.
-  MeasuredRates rates() const { return rates_.found(); }
-  /// For how long the inputs that motion is predicted from were held, of all runs: speed, yaw rate [s].
-  std::array<double, 2> held() const { return held_.found(); }
+  /// What was driven in all runs.
+  const DrivenRange& range() const { return range_; }
   /// Median time between wheel speeds of late [s]; 0 where there were none.
   double wheel_interval() const { return wheel_timer_.interval(); }
 
@@ -82,12 +75,11 @@ class SegmentStream {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.drive_, self.keep_, self.newest_, self.stamps_, self.speeds_, self.wheels_ever_, self.range_, self.rates_,
-      self.held_);
+    a(self.drive_, self.keep_, self.newest_, self.stamps_, self.speeds_, self.wheels_ever_, self.range_);
     a(self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_, self.wheel_timer_,
       self.cutters_, self.output_, self.breaks_, self.learned_last_);
     a(self.courses_, self.position_last_, self.heading_, self.others_, self.turned_until_, self.turned_,
-      self.attitudes_, self.evidence_, self.steepest_);
+      self.attitudes_, self.evidence_);
   }
 
  private:
@@ -117,11 +109,8 @@ class SegmentStream {
   std::array<StampGate, kStreams - 1 + kReadingKinds> stamps_;  ///< of each kind of readings, which come last
   std::array<std::array<SpeedGate, 3>, 2> speeds_;
   bool wheels_ever_ = false;
-  std::array<double, 4> range_{kNever, -kNever, kNever, -kNever};
+  DrivenRange range_;
   AttitudeGate attitudes_;
-  double steepest_ = 0.0;
-  BodyRates rates_;
-  HoldTimes held_;
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet
   double now_ = -kNever;             ///< stamp of the pose that is being used, or was last [s]
