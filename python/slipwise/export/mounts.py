@@ -11,7 +11,7 @@ from html import escape  # xml.sax.saxutils imports ssl
 from slipwise.errors import ModelError
 from slipwise.export.origin import one_line
 from slipwise.models.model import Model
-from slipwise.models.mounted import Estimate, Mounted
+from slipwise.models.mounted import Estimate, Mounted, first_source, given_place
 from slipwise.models.sensor_look import sensor_look
 
 _FRAME = "pose_sensor"  # of a sensor without a name
@@ -23,8 +23,6 @@ def mount_of_look(model: Model) -> Mounted:
     Raises:
         ModelError: nothing of the slip looks like a sensor off the centre of turning.
     """
-    settings = model.content.provenance.settings.get("sensor_extrinsics")
-    given = settings if isinstance(settings, dict) else {}
     if model.motion.slip_size == 0 or model.motion.sensor_extrinsics:
         raise ModelError(
             "the model has no slip that looks like a mount",
@@ -32,8 +30,8 @@ def mount_of_look(model: Model) -> Mounted:
         )
     look = sensor_look(model)
     known = [
-        (float(given.get(name, 0.0)) + look.pose[axis], look.std[axis]) if look.clear(axis) else None
-        for axis, name in enumerate(("x", "y", "yaw"))
+        (given + look.pose[axis], look.std[axis]) if look.clear(axis) else None
+        for axis, given in enumerate(given_place(model))
     ]
     if not any(known):
         raise ModelError(
@@ -41,7 +39,7 @@ def mount_of_look(model: Model) -> Mounted:
             advice="drive arcs of both hands, and turns in place",
         )
     x, y, yaw = known
-    return Mounted(_FRAME, x, y, yaw, first=True)
+    return Mounted(first_source(model) or _FRAME, x, y, yaw, first=True)
 
 
 def mounts_text(mounts: Sequence[Mounted], origin: Sequence[str]) -> str:

@@ -23,7 +23,7 @@ from slipwise.models.axes import refuse_sideways
 from slipwise.models.body_force import without_force
 from slipwise.models.inputs import InputName
 from slipwise.models.model import Model
-from slipwise.models.mounted import UNITS, mounts_in
+from slipwise.models.mounted import UNITS, first_mount, mounts_in
 
 
 @dataclass(frozen=True)
@@ -91,15 +91,15 @@ def _c_header(model: Model, _: ExportOptions, origin: list[str]) -> Exported:
 
 
 def _mounts(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
-    found = mounts_in(model)
-    if options.no_side_slip or not found:
-        look = mount_of_look(model)
+    first = first_mount(model)
+    if options.no_side_slip or not ((first and first.sentence()) or mounts_in(model)):
+        first = mount_of_look(model)
         if not options.no_side_slip:
             raise ModelError(
-                f"one source of poses does not tell side slip from a mount ({look.sentence()})",
+                f"one source of poses does not tell side slip from a mount ({first.sentence()})",
                 advice="add --no-side-slip where the robot does not slip sideways",
             )
-        found = (look, *found)
+    found = (*((first,) if first and first.sentence() else ()), *mounts_in(model, first))
     values = {
         number if mount.first else f"{mount.name} {number}": estimate[0]
         for mount in found

@@ -6,14 +6,17 @@ from __future__ import annotations
 import re
 import tomllib
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from sample_models import make_model, named
 
 import slipwise as sw
+from slipwise.calibration.mounts import Mount, holding_mounts
 from slipwise.errors import ModelError
 from slipwise.export.mounts import mounts_text
-from slipwise.models.mounted import Mounted
+from slipwise.models.mounted import Mounted, mounts_in
 
 RTK = Mounted('/rtk "1"\n', (0.4512, 0.001), (-0.2, 0.001), (0.0348, 0.0003), (0.12, 0.001))
 
@@ -55,3 +58,31 @@ def test_one_source_is_a_mount_only_where_the_user_says_so() -> None:
     straight = make_model(named("full-linear-6", ang__w=-0.4))
     with pytest.raises(ModelError, match="no part of the learned slip"):
         sw.export_model(straight, "mounts", name="m", force=True, options=options)
+
+
+@pytest.mark.parametrize(("identifiable", "turned"), [(True, 0.0), (True, 0.5), (False, 0.5)])
+def test_a_further_source_is_placed_by_the_learned_place_of_the_first(
+    identifiable: bool, turned: float
+) -> None:
+    """The rows of the second one were learned as if the first one sat in base_link, as the settings say."""
+    first, second = np.array([0.4, 0.1]), np.array([-0.3, 0.2])
+    cosine, sine = np.cos(turned), np.sin(turned)
+    beside = np.array([[cosine, sine], [-sine, cosine]]) @ (second - first)
+    made = replace(
+        named("full-linear-6"), sensor_extrinsics=(*first, turned), std=0.003, identifiable=identifiable
+    )
+    rtk = Mount(
+        "rtk", "lidar", np.array([*beside, -turned, 0.0]), np.diag([1e-6, 1e-6, 1e-6, 1e-6]), 100.0, True
+    )
+    model = holding_mounts(make_model(made), [rtk])
+    (found,) = mounts_in(model)
+    values = sw.export_model(model, "mounts", name="m", force=True).values
+    if not identifiable:
+        assert (found.x, found.y, found.yaw) == (None, None, None)
+        assert not {"x", "rtk x", "rtk yaw"} & values.keys()
+        return
+    assert found.x is not None
+    assert found.yaw == pytest.approx((0.0, 0.003), abs=1e-3)
+    assert found.x == pytest.approx((second[0], 0.003), abs=1e-3)
+    placed = {name: round(values[name], 4) for name in ("x", "y", "rtk x", "rtk y")}
+    assert placed == {"x": 0.4, "y": 0.1, "rtk x": -0.3, "rtk y": 0.2}

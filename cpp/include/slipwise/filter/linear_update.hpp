@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a linear measurement does to a covariance: the only code that touches one by a measurement
-// (derivations/filter.md).
+// What a linear measurement with noise of its own does to a covariance, for all filters (derivations/filter.md). Where
+// the noise is also that of the state, `identify/channel_run` and `filter/window_model` do it.
 #pragma once
 
 #include <Eigen/Cholesky>
