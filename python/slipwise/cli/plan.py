@@ -91,8 +91,10 @@ def _write(files: dict[str, Path], drawn: Plan) -> None:
     from slipwise.reporting.plan_page import plan_page
 
     write_text_whole(files["html"], plan_page(drawn))
-    rows = "".join(f"{t:.6f},{v:.6f},{w:.6f}\n" for t, v, w in drawn.route.trajectory.commands.tolist())
-    write_text_whole(files["csv"], "t,cmd_v,cmd_omega\n" + rows)
+    trajectory = drawn.route.trajectory
+    names = ",".join(("t", *(f"cmd_{name}" for name in trajectory.columns)))
+    rows = (",".join(f"{value:.6f}" for value in row) for row in trajectory.commands.tolist())
+    write_text_whole(files["csv"], "\n".join((names, *rows)) + "\n")
 
 
 def _figures(drawn: Plan) -> dict[str, Any]:

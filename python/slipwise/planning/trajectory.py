@@ -12,7 +12,7 @@ from slipwise import _core
 from slipwise.argument_types import check_arguments
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.ground import ElevationMap, Ground, Pose
-from slipwise.models.axes import Axes, axes_of
+from slipwise.models.axes import SIDEWAYS, TWIST, Axes, axes_of
 from slipwise.models.model import Model
 from slipwise.models.seen_speeds import warn_of_unseen_speeds
 from slipwise.number_text import number_text
@@ -76,6 +76,12 @@ class Trajectory:
     def duration(self) -> float:
         """Time from the first command until the goal is reached [s]."""
         return float(self.t[-1])
+
+    @property
+    def columns(self) -> dict[str, Floats]:
+        """Commands over their times by the names of their axes, each [N]."""
+        axes = SIDEWAYS if self.commands.shape[1] > 1 + len(TWIST) else TWIST
+        return dict(zip(axes.names, self.commands[:, 1:].T, strict=True))
 
 
 class Planner:

@@ -25,6 +25,11 @@ from slipwise.reporting.plan_drawing import (
 from slipwise.student import ellipse_squared
 
 HIGHEST = 900  # px
+_LINES = {
+    "v": ("speed [m/s]", PATH),
+    "vy": ("to the left [m/s]", GOAL),
+    "omega": ("yaw rate [rad/s]", SPREAD),
+}
 
 
 def plan_page(plan: Plan) -> str:
@@ -124,5 +129,6 @@ def _line(points: Any, colour: str, *, fill: bool = False, width: float = 1.5) -
 
 
 def _commands(plan: Plan) -> Figure:
-    t, v, omega = plan.route.trajectory.commands.T
-    return step_lines(t, {"speed [m/s]": (v, PATH), "yaw rate [rad/s]": (omega, SPREAD)})
+    trajectory = plan.route.trajectory
+    lines = {_LINES[name][0]: (values, _LINES[name][1]) for name, values in trajectory.columns.items()}
+    return step_lines(trajectory.commands[:, 0], lines)

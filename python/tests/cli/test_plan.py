@@ -13,6 +13,7 @@ from planning.planning_samples import learned_model, walled_map
 from sample_models import Made, make_model
 
 from slipwise import _core
+from slipwise.logs import open_log
 from slipwise.planning.pgm import write_pgm
 
 Slipwise = Callable[..., Result]
@@ -38,6 +39,20 @@ def test_plan_draws_the_swept_path_and_writes_the_commands(
     assert table.dtype.names == ("t", "cmd_v", "cmd_omega")
     assert table["cmd_v"][-1] == 0.0
     assert "The predicted end is" in result.out
+
+
+def test_the_commands_of_a_robot_that_drives_sideways_are_a_tidy_table(
+    slipwise: Slipwise, folder: Path, arguments: list[object]
+) -> None:
+    make_model(Made(_core.named_basis("omni-8"), commands=True)).save(folder / "model.yaml")
+    result = slipwise(*arguments, "--from", START, "--to", GOAL, "--json", "-")
+    assert result.code == 0
+    assert "to the left [m/s]" in Path("plan.html").read_text(encoding="utf-8")
+    assert Path("plan.csv").read_text(encoding="utf-8").startswith("t,cmd_v,cmd_vy,cmd_omega\n")
+    (folder / "poses.txt").write_text("0 0 0 0 0 0 0 1\n1 0.1 0 0 0 0 0 1\n", encoding="utf-8")
+    read = open_log("plan.csv", poses=Path("poses.txt")).runs[0].commands
+    assert read is not None
+    assert read.rows() == pytest.approx(np.array(result.json["commands"]), abs=1e-6)
 
 
 def test_a_bad_verdict_is_refused_unless_forced(
