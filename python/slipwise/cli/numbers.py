@@ -34,9 +34,15 @@ def pose_of(text: str, option: str) -> tuple[float, float, float]:
     """Return a pose (x, y [m], yaw [rad]).
 
     Raises:
-        SettingsError: it is none.
+        SettingsError: it is none, or its heading is more than a turn, as headings in degrees are.
     """
     x, y, yaw = _numbers(text, option, "pose X,Y,YAW", "1.5,2,0.3")
+    if abs(yaw) > 2.0 * math.pi:
+        raise SettingsError(
+            f"a heading of {yaw:.10g} rad is more than a turn",
+            where=option,
+            advice=f"give radians: {yaw:.10g} degrees are {math.radians(yaw):.4g}",
+        )
     return x, y, yaw
 
 

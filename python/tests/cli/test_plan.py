@@ -89,6 +89,12 @@ def test_a_plan_on_a_grade_takes_slope_and_direction(slipwise: Slipwise, argumen
         ("5.7,2,0", GOAL, "the start lies in or too near an obstacle"),
         ("1,2", GOAL, "'1,2' is not a pose (--from): give X,Y,YAW"),
         (START, "nan,2,0", "'nan,2,0' is not a pose (--to)"),
+        (
+            "1.5,6,45",
+            GOAL,
+            "a heading of 45 rad is more than a turn (--from): give radians: 45 degrees are 0.7854",
+        ),
+        (START, "5,6.4,-6.3", "a heading of -6.3 rad is more than a turn (--to)"),
         (START, "40,2,0", "off the map"),
     ],
 )
