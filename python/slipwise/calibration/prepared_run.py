@@ -116,11 +116,11 @@ def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
     """Choose the inputs of every run.
 
     Raises:
-        LogError: no run has such inputs, no run has poses, or two files hold the same drive.
+        LogError: no run has such inputs, no run has poses, or a drive is there twice.
         SettingsError: there is no such input.
     """
     input_name = input_name_of(input_name, where="--input")
-    refuse_same_log(log)
+    refuse_same_log(log, input_name)
     drive = []
     alone = gyro_alone(log.runs)
     for index, run in enumerate(log.runs):

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,21 +13,26 @@ from slipwise.errors import LogError
 from slipwise.logs.findings.finding import Finding
 
 if TYPE_CHECKING:
-    from slipwise.logs.log import Log, Run
+    from slipwise.logs.log import Bools, Floats, Log, Run
     from slipwise.models.model import Model
 
 _ALIKE = 0.5  # of the poses of a run
+_AGAIN = 1.0 / 3.0  # of the poses of a run: a drive and half of it again
 _FEWEST = 20  # poses at other places, with fewer of which nothing is said
 _TWICE = "what it has seen of it counts twice, standard deviations are too small, and figures prove little"
 
 
-def refuse_same_log(log: Log) -> None:
-    """Refuse files that were joined to one log, where two of them hold the same drive.
+def refuse_same_log(log: Log, input_name: str = "") -> None:
+    """Refuse files that were joined to one log, where two of them hold the same drive, or one holds it twice.
 
     Parts of one file that lie at other times are other drives.
 
+    Args:
+        log: the log.
+        input_name: "command" or "wheel", where runs without it are not used; without it, all are.
+
     Raises:
-        LogError: a file is given twice, or a copy of it.
+        LogError: a file is given twice, or a copy of it, or poses come again in their order.
     """
     counted = Counter(source.sha256 for source in log.sources)
     again = {source.path: source.sha256 for source in log.sources if counted[source.sha256] > 1}
@@ -42,6 +47,8 @@ def refuse_same_log(log: Log) -> None:
             raise LogError(what, where=path, advice="give it once")
         seen[drive] = path
     _refuse_same_poses(log)
+    inputs = [{"command": run.commands, "wheel": run.wheels}.get(input_name, run.poses) for run in log.runs]
+    _refuse_repeated_poses([run for run, used in zip(log.runs, inputs, strict=True) if used is not None])
 
 
 def _refuse_same_poses(log: Log) -> None:
@@ -61,9 +68,61 @@ def _refuse_same_poses(log: Log) -> None:
 def _places(run: Run) -> set[bytes]:
     """Return where a run was when, as bytes of stamps with places; of a robot that stands, the first."""
     rows = np.column_stack((run.poses.t, run.poses.x, run.poses.y))
-    moved = np.ones(len(rows), np.bool_)
-    moved[1:] = (np.diff(rows[:, 1:], axis=0) != 0.0).any(axis=1)
-    return {row.tobytes() for row in rows[moved]}
+    return {row.tobytes() for row in rows[_changed(rows[:, 1:])]}
+
+
+def _refuse_repeated_poses(runs: Sequence[Run]) -> None:
+    """Refuse runs that hold a drive twice: poses that come again in their order, the same to the bit."""
+    moving = [_moving(run) for run in runs]
+    rows = np.concatenate((np.empty((0, 4)), *moving))
+    owner = np.repeat(np.arange(len(moving)), [len(each) for each in moving])
+    start, length, back = _longest_again(rows[:, 1:])
+    if length < _FEWEST or length < _AGAIN * len(moving[owner[start]]):
+        return
+    later, earlier = (runs[owner[row]] for row in (start, start - back))
+    t, before = rows[start, 0] - later.span[0], rows[start - back, 0] - earlier.span[0]
+    of = "" if later is earlier else f" of run {earlier.name}"
+    raise LogError(
+        f"a drive is there twice: from {t:.1f} s on the poses are those from {before:.1f} s{of} again",
+        where=", ".join((*later.files[:1], f"run {later.name}")),
+        advice="keep one of the two",
+    )
+
+
+def _moving(run: Run) -> Floats:
+    """Return rows of (t, x, y, yaw), the yaw zero where positions alone were measured; without standing."""
+    rows = np.nan_to_num(run.poses.rows()[:, :4])
+    return rows[_changed(rows[:, 1:])]
+
+
+def _changed(rows: Floats) -> Bools:
+    """Return which rows differ from the one before, [N]; the first one does."""
+    changed = np.ones(len(rows), np.bool_)
+    changed[1:] = (np.diff(rows, axis=0) != 0.0).any(axis=1)
+    return changed
+
+
+def _longest_again(rows: Floats) -> tuple[int, int, int]:
+    """Return the longest stretch of rows that came before: its first row, how many it has, how far before.
+
+    The distance is the one at which most rows were first seen; then rows are compared with those before.
+    Rows count once, so that a robot that stands and flickers between few poses drives nothing again.
+    """
+    if not len(rows):
+        return 0, 0, 0
+    order = np.lexsort(rows.T)  # equal rows side by side, the first one first
+    other = _changed(rows[order])
+    first = np.empty(len(rows), np.int64)
+    first[order] = order[other][np.cumsum(other) - 1]
+    seen = np.bincount(np.arange(len(rows)) - first)
+    seen[:_FEWEST] = 0
+    back = int(seen.argmax())
+    if back == 0:
+        return 0, 0, 0
+    same = np.concatenate(([False], (rows[back:] == rows[:-back]).all(axis=1), [False]))
+    edges = np.flatnonzero(np.diff(same)).reshape(-1, 2)
+    begin, end = edges[np.diff(edges, axis=1)[:, 0].argmax()].tolist()
+    return begin + back, len(np.unique(first[begin:end])), back
 
 
 def _measured(run: Run) -> bytes:

@@ -7,13 +7,16 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from cli.conftest import Result
 from sample_surfaces import FIRM, LOOSE, floor_log
 
 from slipwise.calibration.calibrate_sequence import calibrate_sequence
 from slipwise.calibration.same_log import learned_from, refuse_same_log
+from slipwise.errors import LogError
 from slipwise.logs import open_log, save_log
+from slipwise.logs.log import Run
 from slipwise.logs.open_log import joined
 from slipwise.models import load_model
 
@@ -71,6 +74,46 @@ def test_two_runs_of_one_file_are_other_drives(folder: Path) -> None:
     path = folder / "runs.csv"
     save_log(replace(floor_log(FIRM, 1), runs=tuple(runs)), path)
     refuse_same_log(open_log(path))
+
+
+@pytest.mark.parametrize("on", [False, True], ids=["same stamps", "stamps run on"])
+def test_a_log_that_holds_its_drive_twice_is_refused(
+    slipwise: Slipwise, log: Path, folder: Path, on: bool
+) -> None:
+    head, *rows = log.read_text().splitlines()
+    column, again = head.replace('"', "").split(",").index("t"), [row.split(",") for row in rows]
+    last = float(again[-1][column])
+    for row in again:
+        row[column] = str(float(row[column]) + on * (last + 0.05))
+    path = folder / "twice.csv"
+    path.write_text("\n".join((head, *rows, *map(",".join, again))) + "\n")
+    first = open_log(log).runs[0]
+    of = "" if on else f" of run {open_log(path).runs[0].name}"
+    since = last + 0.05 if on else 0.0
+    words = f"from {since:.1f} s on the poses are those from {first.poses.t[0]:.1f} s{of} again ({path}, run "
+    for call in (("calibrate",), ("evaluate",), ("calibrate", "--memory"), ("convert", "-o", "out.csv")):
+        result = slipwise(*call, path)
+        assert result.code == 2
+        assert result.line.startswith(f"a drive is there twice: {words}")
+        assert result.line.endswith("): keep one of the two")
+
+
+def test_a_drive_that_comes_again_in_a_second_run_with_other_stamps_is_refused() -> None:
+    log = floor_log(FIRM, 1)
+    run = log.runs[0]
+    poses = replace(run.poses, t=run.poses.t + 1000.0)
+    with pytest.raises(LogError, match=r"from 0\.0 s on the poses are those from 0\.0 s of run a again"):
+        refuse_same_log(replace(log, runs=(replace(run, name="a"), Run("b", None, None, poses))))
+
+
+def test_a_robot_that_stands_or_passes_the_same_places_otherwise_drives_nothing_again() -> None:
+    log = floor_log(FIRM, 1)
+    poses = log.runs[0].poses
+    rows = np.arange(len(poses))
+    stands, flickers, there_and_back = rows * 0, rows % 2, np.minimum(rows, rows[::-1])
+    for places in (stands, flickers, there_and_back):
+        other = replace(poses, x=poses.x[places], y=poses.y[places], yaw=poses.yaw[places])
+        refuse_same_log(replace(log, runs=(replace(log.runs[0], poses=other),)))
 
 
 def test_going_on_with_a_log_that_was_learned_is_a_reservation(
