@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from slipwise.ground import Grade
 
 
+_TURN = 6.2832  # rad, 2 pi as it is typed
+
+
 def _numbers(text: str, option: str, names: str, example: str) -> tuple[float, ...]:
     """Return the numbers of `text` in the order of `names`, which begins with what they are.
 
@@ -37,7 +40,7 @@ def pose_of(text: str, option: str) -> tuple[float, float, float]:
         SettingsError: it is none, or its heading is more than a turn, as headings in degrees are.
     """
     x, y, yaw = _numbers(text, option, "pose X,Y,YAW", "1.5,2,0.3")
-    if abs(yaw) > 2.0 * math.pi:
+    if abs(yaw) > _TURN:
         raise SettingsError(
             f"a heading of {yaw:.10g} rad is more than a turn",
             where=option,
