@@ -59,7 +59,6 @@ LARGER: dict[str, tuple[int, int]] = {
 
 CLASS = re.compile(r"(class|struct) (?:alignas\(\S+\) )?(\w+)(?: final)?(?: : .*)? \{$")
 OTHER = re.compile(r"(using|friend|enum|struct|class|template|static_assert|union|namespace)\b")
-METHOD = re.compile(r"(~?\w+|operator\S+)\($")
 
 
 def declarations(lines: list[str]) -> Iterator[tuple[bool, str]]:

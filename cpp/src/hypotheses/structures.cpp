@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structures that predict each segment before they learn it.
+// Which structures are tried, how they are weighted, and what each knows.
 #include "slipwise/hypotheses/structures.hpp"
 
 #include <algorithm>

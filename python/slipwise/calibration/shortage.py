@@ -84,10 +84,11 @@ def unused_wheels(log: Log, settings: Settings, kept: Posterior, input_name: str
     with_wheels = sum(run.wheels is not None and len(run.wheels) > 1 for run in log.runs)
     if input_name != "command" or not with_wheels or kept.motion.response:
         return ()
+    use = "only say how the robot drives when a prediction starts"
     if any(run.commands is not None and run.commands.car is not None for run in log.runs):
-        why = "curves of throttle and steering are learned from poses alone"
+        use, why = "are not used", "curves of throttle and steering are learned from poses alone"
     elif settings.estimator != AVERAGE:
-        why = f"{settings.estimator} learns from commands alone"
+        use, why = "are not used", f"{settings.estimator} learns from commands alone"
     elif settings.basis != "auto":
         why = f"only basis auto also learns by way of the wheels, and it is {settings.basis}"
     elif "cascaded" not in settings.auto.structures:
@@ -96,7 +97,7 @@ def unused_wheels(log: Log, settings: Settings, kept: Posterior, input_name: str
         why = f"{_STRUCTURES[kept.structure]} predicts better"
         if with_wheels < len(log.runs):
             why += f", and {with_wheels} of {len(log.runs)} runs have some"
-    return (f"From commands, wheel speeds are not used: {why}.",)
+    return (f"From commands, wheel speeds {use}: {why}.",)
 
 
 def unused_measurements(log: Log, settings: Settings, *, smooth: bool) -> tuple[str, ...]:

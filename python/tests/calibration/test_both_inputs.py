@@ -95,7 +95,7 @@ def test_wheels_that_teach_nothing_are_said_and_leave_the_commands() -> None:
 def test_a_model_of_commands_says_why_it_does_not_use_the_wheel_speeds() -> None:
     def said(**settings: object) -> list[str]:
         notes = calibrate(simulated_log(DRIVE), input="command", settings=sw.make_settings(settings)).notes
-        return [note for note in notes if note.startswith("From commands, wheel speeds are not used")]
+        return [note for note in notes if note.startswith("From commands, wheel speeds only say how")]
 
     (named,) = said(basis="edd-2")
     assert "only basis auto also learns by way of the wheels, and it is edd-2" in named
