@@ -47,7 +47,7 @@ def _without(structure: str) -> dict[str, object]:
 
 
 _AVERAGE, _FILTER = "hypotheses.average.", "hypotheses.filter."
-_BANK = "hypotheses/motion_hypotheses"
+_BANK = "hypotheses/structures"
 _ACTUATOR = (
     "filter/window_model",
     *(

@@ -76,7 +76,7 @@ def calibrate_sequence(
         settings = for_the_ground_of(logs[0], settings)
     input_name = choose_input(logs[0], input or (None if start is None else start.content.input))
     log = joined(list(logs))
-    refuse_same_log(log, input_name)
+    refuse_same_log(log)
     drives = _drives(logs, input_name)
     windows = learning_windows(tuple(run for drive in drives for run in drive), input_name, settings)
     refuse_empty(windows, log)

@@ -120,7 +120,7 @@ def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
         SettingsError: there is no such input.
     """
     input_name = input_name_of(input_name, where="--input")
-    refuse_same_log(log, input_name)
+    refuse_same_log(log)
     drive = []
     alone = gyro_alone(log.runs)
     for index, run in enumerate(log.runs):

@@ -22,17 +22,13 @@ _FEWEST = 20  # poses at other places, with fewer of which nothing is said
 _TWICE = "what it has seen of it counts twice, standard deviations are too small, and figures prove little"
 
 
-def refuse_same_log(log: Log, input_name: str = "") -> None:
+def refuse_same_log(log: Log) -> None:
     """Refuse files that were joined to one log, where two of them hold the same drive, or one holds it twice.
 
-    Parts of one file that lie at other times are other drives.
-
-    Args:
-        log: the log.
-        input_name: "command" or "wheel", where runs without it are not used; without it, all are.
+    Parts of one file that lie at other times are other drives, unless their poses are the same to the bit.
 
     Raises:
-        LogError: a file is given twice, or a copy of it, or poses come again in their order.
+        LogError: a file is given twice, or a copy of it, or poses of one come again in their order.
     """
     counted = Counter(source.sha256 for source in log.sources)
     again = {source.path: source.sha256 for source in log.sources if counted[source.sha256] > 1}
@@ -47,8 +43,8 @@ def refuse_same_log(log: Log, input_name: str = "") -> None:
             raise LogError(what, where=path, advice="give it once")
         seen[drive] = path
     _refuse_same_poses(log)
-    inputs = [{"command": run.commands, "wheel": run.wheels}.get(input_name, run.poses) for run in log.runs]
-    _refuse_repeated_poses([run for run, used in zip(log.runs, inputs, strict=True) if used is not None])
+    for path in dict.fromkeys(run.files[0] for run in log.runs if run.files):
+        _refuse_repeated_poses([run for run in log.runs if run.files[:1] == (path,)])
 
 
 def _refuse_same_poses(log: Log) -> None:
@@ -72,7 +68,7 @@ def _places(run: Run) -> set[bytes]:
 
 
 def _refuse_repeated_poses(runs: Sequence[Run]) -> None:
-    """Refuse runs that hold a drive twice: poses that come again in their order, the same to the bit."""
+    """Refuse runs of one file that hold a drive twice: poses that come again in their order, to the bit."""
     moving = [_moving(run) for run in runs]
     rows = np.concatenate((np.empty((0, 4)), *moving))
     owner = np.repeat(np.arange(len(moving)), [len(each) for each in moving])

@@ -129,9 +129,9 @@ def evaluate_sequence(
         method_info(name, options.models)
     if not logs:
         raise LogError("a sequence needs a log", where="--memory", advice="give logs in the order of time")
+    refuse_same_log(joined([log for _, log in logs]))
     memory = options.memory or SequenceOptions()
     input_name = choose_input(logs[0][1], input or (memory.start.content.input if memory.start else None))
-    refuse_same_log(joined([log for _, log in logs]), input_name)
     drives = [prepare_run(log, input_name) for _, log in logs]
     horizons = sorted(set(options.horizons))
     remembering = settings.model_copy(update={"basis": REMEMBERING, "estimator": AVERAGE})

@@ -29,7 +29,7 @@ def test_all_that_is_declared_is_listed(tmp_path: Path) -> None:
 def test_settings_and_sources_are_varied_once_each() -> None:
     names = [constant.name for constant in sensitivity.constants()]
     assert len(names) == len(set(names))
-    assert {"hypotheses.filter.iekf.huber", "disturbance.white", "motion_hypotheses.kPatience"} <= set(names)
+    assert {"hypotheses.filter.iekf.huber", "disturbance.white", "structures.kPatience"} <= set(names)
     assert names
     assert not sensitivity.FRACTIONS - set(names)
 

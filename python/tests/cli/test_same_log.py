@@ -98,12 +98,12 @@ def test_a_log_that_holds_its_drive_twice_is_refused(
         assert result.line.endswith("): keep one of the two")
 
 
-def test_a_drive_that_comes_again_in_a_second_run_with_other_stamps_is_refused() -> None:
+def test_a_drive_that_comes_again_in_a_second_run_of_one_file_is_refused() -> None:
     log = floor_log(FIRM, 1)
     run = log.runs[0]
-    poses = replace(run.poses, t=run.poses.t + 1000.0)
+    again = Run("b", None, None, replace(run.poses, t=run.poses.t + 1000.0), files=("a.csv",))
     with pytest.raises(LogError, match=r"from 0\.0 s on the poses are those from 0\.0 s of run a again"):
-        refuse_same_log(replace(log, runs=(replace(run, name="a"), Run("b", None, None, poses))))
+        refuse_same_log(replace(log, runs=(replace(run, name="a", files=("a.csv",)), again)))
 
 
 def test_a_robot_that_stands_or_passes_the_same_places_otherwise_drives_nothing_again() -> None:
@@ -113,7 +113,7 @@ def test_a_robot_that_stands_or_passes_the_same_places_otherwise_drives_nothing_
     stands, flickers, there_and_back = rows * 0, rows % 2, np.minimum(rows, rows[::-1])
     for places in (stands, flickers, there_and_back):
         other = replace(poses, x=poses.x[places], y=poses.y[places], yaw=poses.yaw[places])
-        refuse_same_log(replace(log, runs=(replace(log.runs[0], poses=other),)))
+        refuse_same_log(replace(log, runs=(replace(log.runs[0], files=("a.csv",), poses=other),)))
 
 
 def test_going_on_with_a_log_that_was_learned_is_a_reservation(
