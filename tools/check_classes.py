@@ -76,12 +76,16 @@ def declarations(lines: list[str]) -> Iterator[tuple[bool, str]]:
             yield public, text
 
 
-def name_of_method(text: str, owner: str) -> str | None:
-    """Return the method that `text` declares in class `owner`; None for constructors and operators."""
-    head = re.sub(r"<[^<>]*>", "", re.sub(r"<[^<>]*>", "", text)).split("{")[0].split(" = ")[0]
+def head_of(text: str) -> str:
+    """Return what stands before the body or the value of the declaration `text`, without template arguments."""
+    return re.sub(r"<[^<>]*>", "", re.sub(r"<[^<>]*>", "", text)).split("{")[0].split(" = ")[0]
+
+
+def name_of_method(head: str, owner: str) -> str | None:
+    """Return the method that `head` declares in class `owner`; None for constructors, operators and members."""
     if "(" not in head or "operator" in head:
         return None
-    name = head[: head.index("(")].split()[-1].lstrip("*&")
+    name = head[: head.index("(")].rsplit(maxsplit=1)[-1].lstrip("*&")
     return None if name.lstrip("~") == owner else name
 
 
@@ -100,10 +104,11 @@ def cpp_classes(text: str) -> Iterator[tuple[str, int, int]]:
             plain = re.sub(r"^template <.*?> ", "", declared)
             if OTHER.match(plain) or plain.startswith(("static constexpr", "inline constexpr")):
                 continue
-            name = name_of_method(plain, found[2])
+            head = head_of(plain)
+            name = name_of_method(head, found[2])
             if name is not None and public:
                 methods.add(name)
-            members += "(" not in plain.split("{")[0].split(" = ")[0] and not plain.startswith("static ")
+            members += "(" not in head and not plain.startswith("static ")
         yield found[2], len(methods), members
 
 
@@ -132,20 +137,16 @@ def key_of(path: str, name: str) -> str:
 
 def faults_of(path: str, name: str, methods: int, members: int) -> list[str]:
     """Return what is wrong with the size of a class; data with few methods may have many members."""
-    size = (methods, members)
+    has = f"{path}: {name} has {methods} public methods and {members} members"
     large = methods > MOST_METHODS or (members > MOST_MEMBERS and methods > FEW_METHODS)
     most = LARGER.get(key_of(path, name))
     if most is None:
-        has = f"{path}: {name} has {methods} public methods and {members} members; split it by concept"
-        return (
-            [f"{has}; split it by concept, {MOST_METHODS} and {MOST_MEMBERS} are the limit"] if large else []
-        )
-    if size == most and large:
+        limit = f"{MOST_METHODS} and {MOST_MEMBERS} are the limit"
+        return [f"{has}; split it by concept, {limit}"] if large else []
+    if (methods, members) == most and large:
         return []
     wrong = "larger" if methods > most[0] or members > most[1] else "smaller, which is to be written there"
-    return [
-        f"{path}: {name} has {methods} public methods and {members} members, {most} in LARGER: it is {wrong}"
-    ]
+    return [f"{has}, {most} in LARGER: it is {wrong}"]
 
 
 def main(root: Path) -> int:

@@ -10,6 +10,7 @@ import numpy as np
 
 from slipwise.models.body_gains import BodyTwists, body_twists
 from slipwise.models.model import Model
+from slipwise.models.mounted import given_place
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION
 from slipwise.number_text import estimate_text, estimate_texts
 
@@ -119,10 +120,8 @@ def if_turned(model: Model) -> IfTurned | None:
 
 
 def _setting(model: Model, look: SensorLook, axis: int) -> str:
-    settings = model.content.provenance.settings.get("sensor_extrinsics")
     name = ("x", "y", "yaw")[axis]
-    given = float(settings.get(name, 0.0)) if isinstance(settings, dict) else 0.0
-    return f"--set sensor_extrinsics.{name}={given + look.pose[axis]:.2f}"
+    return f"--set sensor_extrinsics.{name}={given_place(model)[axis] + look.pose[axis]:.2f}"
 
 
 def _told_apart(body: BodyTwists) -> bool:
