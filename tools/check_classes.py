@@ -77,12 +77,12 @@ def declarations(lines: list[str]) -> Iterator[tuple[bool, str]]:
 
 
 def head_of(text: str) -> str:
-    """Return what stands before the body or the value of the declaration `text`, without template arguments."""
+    """Return what stands before the body or value of the declaration `text`, without template arguments."""
     return re.sub(r"<[^<>]*>", "", re.sub(r"<[^<>]*>", "", text)).split("{")[0].split(" = ")[0]
 
 
 def name_of_method(head: str, owner: str) -> str | None:
-    """Return the method that `head` declares in class `owner`; None for constructors, operators and members."""
+    """Return the method that `head` declares in class `owner`; None for constructors, operators, members."""
     if "(" not in head or "operator" in head:
         return None
     name = head[: head.index("(")].rsplit(maxsplit=1)[-1].lstrip("*&")
