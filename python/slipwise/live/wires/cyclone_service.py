@@ -15,6 +15,7 @@ from slipwise.live.wires.cyclone_types import cyclone_type
 
 _HEADER = 4  # bytes of CDR before the message
 _STEP = 0.005  # s between looks for an answer
+_AGAIN = 0.5  # s without an answer after which a server that never answered is asked again
 
 
 class CycloneService:
@@ -49,10 +50,14 @@ class CycloneService:
         self._client = secrets.randbits(64)
         self._numbered = numbered
         self._number = 0
+        self._answered = False
         self._lock = threading.Lock()
 
     def call(self, request: bytes, matched_until: float, timeout: float) -> bytes | None:
         """Return the answer to a request, or None where none comes.
+
+        A server may answer before it has found our reader, and that answer is lost: until its first answer a
+        server gets the request again every half second, so one that is slow may get it several times.
 
         Args:
             request: CDR with its header.
@@ -66,15 +71,28 @@ class CycloneService:
                 time.sleep(_STEP)
             take_cdr(self.reader)  # what others asked for
             self._number += 1
-            write_cdr(self.writer, self._with_number(request))
+            sent = 0
             until = time.monotonic() + timeout
             while time.monotonic() < until:
-                for answer in take_cdr(self.reader):
-                    own = self._without_number(answer)
-                    if own is not None:
-                        return own
-                time.sleep(_STEP)
+                write_cdr(self.writer, self._with_number(request))
+                sent += 1
+                answers = self._answers(1, until if self._answered else min(until, time.monotonic() + _AGAIN))
+                if answers:
+                    self._answered = True
+                    # None of the others may be taken for the answer to the next request.
+                    self._answers(sent - len(answers), time.monotonic() + _AGAIN)
+                    return answers[0]
         return None
+
+    def _answers(self, count: int, until: float) -> list[bytes]:
+        """Return the answers to this client as soon as there are that many, or those until then."""
+        found: list[bytes] = []
+        while len(found) < count and time.monotonic() < until:
+            taken = [self._without_number(answer) for answer in take_cdr(self.reader)]
+            found += [answer for answer in taken if answer is not None]
+            if len(found) < count:
+                time.sleep(_STEP)
+        return found
 
     def _with_number(self, request: bytes) -> bytes:
         if not self._numbered:

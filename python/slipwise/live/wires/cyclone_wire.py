@@ -138,7 +138,8 @@ class CycloneWire:
     def call(self, service: str, type_name: str, request: bytes, *, timeout: float) -> bytes | None:
         """Call a service; None where no answer comes in time [s].
 
-        A wire that was just opened gets `DISCOVERY` to find the service first.
+        A wire that was just opened gets `DISCOVERY` to find the service first. A service that never answered
+        before may get the request several times.
         Answers of Fast DDS say only in a header that Cyclone does not show whose they are: the next answer of
         the service counts.
 

@@ -22,6 +22,8 @@ from live.wires.wire_messages import (
 )
 
 from slipwise.errors import SettingsError
+from slipwise.live.wires.cyclone_bytes import take_cdr, write_cdr
+from slipwise.live.wires.cyclone_types import cyclone_type
 from slipwise.live.wires.cyclone_wire import CycloneWire
 from slipwise.live.wires.ros_types import type_hash
 from slipwise.live.wires.wire import OnMessage, WireOptions
@@ -110,14 +112,68 @@ def test_a_closed_wire_leaves_no_thread_and_may_be_closed_again() -> None:
         opened.publish("/x", STRING, to_cdr(STRING, data="x"))
 
 
+class Server:
+    """Answers a trigger with a count; its first answers are lost, as where a reader is found late."""
+
+    def __init__(self, service: str, lost: int) -> None:
+        from cyclonedds.core import Policy, Qos
+        from cyclonedds.domain import DomainParticipant
+        from cyclonedds.pub import DataWriter
+        from cyclonedds.sub import DataReader
+        from cyclonedds.topic import Topic
+        from cyclonedds.util import duration
+
+        qos = Qos(
+            Policy.Reliability.Reliable(duration(milliseconds=100)),
+            Policy.History.KeepLast(10),
+            Policy.DataRepresentation(use_cdrv0_representation=True),
+        )
+        participant = DomainParticipant(DOMAIN)
+        request = cyclone_type("std_srvs/srv/Trigger_Request", numbered=True)
+        response = cyclone_type("std_srvs/srv/Trigger_Response", numbered=True)
+        self._reader = DataReader(participant, Topic(participant, f"rq{service}Request", request), qos=qos)
+        self._writer = DataWriter(participant, Topic(participant, f"rr{service}Reply", response), qos=qos)
+        self._lost = lost
+        self.asked = 0
+        self._closed = threading.Event()
+        self._thread = threading.Thread(target=self._serve, daemon=True)
+        self._thread.start()
+
+    def _serve(self) -> None:
+        while not self._closed.wait(0.005):
+            for request in take_cdr(self._reader):
+                self.asked += 1
+                if self.asked > self._lost:
+                    answer = to_cdr("std_srvs/srv/Trigger_Response", success=True, message=str(self.asked))
+                    write_cdr(self._writer, answer[:4] + request[4:20] + answer[4:])
+
+    def __enter__(self) -> Server:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._closed.set()
+        self._thread.join()
+
+
+@pytest.mark.parametrize(("lost", "asked"), [(0, [1, 2, 3]), (1, [2, 3, 4]), (3, [4, 5, 6])])
+def test_a_service_whose_first_answers_are_lost_is_asked_again(
+    wire: CycloneWire, lost: int, asked: list[int]
+) -> None:
+    service = f"/press_{lost}"
+    with Server(service, lost) as server:
+        for count in asked:
+            answer = wire.call(service, "std_srvs/srv/Trigger", b"\x00\x01\x00\x00\x00", timeout=5.0)
+            assert answer is not None
+            assert from_cdr("std_srvs/srv/Trigger_Response", answer).message == str(count)
+        assert server.asked == asked[-1]
+
+
 @pytest.mark.slow
 def test_a_refused_publisher_is_said_once_with_the_ways_out(wire: CycloneWire) -> None:
     from cyclonedds.core import Policy, Qos
     from cyclonedds.domain import DomainParticipant
     from cyclonedds.pub import DataWriter, Publisher
     from cyclonedds.topic import Topic
-
-    from slipwise.live.wires.cyclone_types import cyclone_type
 
     participant = DomainParticipant(DOMAIN)
     elsewhere = Publisher(participant, qos=Qos(Policy.Partition(partitions=["elsewhere"])))
