@@ -26,14 +26,14 @@ from slipwise.student import MOST_DOF
 BASES = ["edd-2", "icr-3", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", "thesis-15", "auto"]
 
 
-def learned(basis: str, input_name: str) -> Model:
+def learned(basis: str, input_name: str, **settings: object) -> Model:
     log = simulated_log(Drive(seconds=40.0, lag=0.2, delay=0.1))
-    return calibrate(log, input=input_name, settings=make_settings({"basis": basis})).model
+    return calibrate(log, input=input_name, settings=make_settings({"basis": basis, **settings})).model
 
 
 @pytest.fixture(scope="module")
 def model() -> Model:
-    return learned("full-linear-6", "command")
+    return learned("full-linear-6", "command", auto={"structures": ["joint"]})
 
 
 def test_zero_command_gives_zero_motion(subtests: pytest.Subtests) -> None:

@@ -64,9 +64,9 @@ def core_settings(  # noqa: PLR0913 - six things, each of its own sort
         settings.learn_clock_offset,
         settings.sensor_extrinsics.learn,
     )
-    tried = settings.auto.structures if settings.basis == "auto" else []
-    hypotheses.cascaded, hypotheses.direct = "cascaded" in tried, "direct" in tried
-    hypotheses.baseline = "baseline" in tried
+    tried, simpler = settings.auto.structures, settings.basis == "auto"
+    hypotheses.cascaded, hypotheses.direct = "cascaded" in tried, simpler and "direct" in tried
+    hypotheses.baseline = simpler and "baseline" in tried
     hypotheses.filter, average = settings.filter_settings(), _core.ModelAverageSettings()
     if coming.positions:
         _change_prior(hypotheses, straight_side_slip_std=STRAIGHT_SIDE_SLIP)

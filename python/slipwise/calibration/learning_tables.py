@@ -114,7 +114,7 @@ class AutoTable(Section):
     bases: list[str] = Field(list(AUTO_BASES), min_length=1)
     structures: Annotated[list[Structure], AfterValidator(_with_joint)] = [
         "joint",  # slip, lag and delay learned from poses together
-        "cascaded",  # from commands, where wheel speeds are logged: the actuator from these, slip behind it
+        "cascaded",  # from commands, beside wheel speeds (of any basis): the actuator from these, then slip
         "direct",  # from commands: slip and delays, no lag
         "baseline",  # the kinematic baseline: no slip, no lag, no delay
     ]

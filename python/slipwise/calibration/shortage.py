@@ -89,8 +89,6 @@ def unused_wheels(log: Log, settings: Settings, kept: Posterior, input_name: str
         use, why = "are not used", "curves of throttle and steering are learned from poses alone"
     elif settings.estimator != AVERAGE:
         use, why = "are not used", f"{settings.estimator} learns from commands alone"
-    elif settings.basis != "auto":
-        why = f"only basis auto also learns by way of the wheels, and it is {settings.basis}"
     elif "cascaded" not in settings.auto.structures:
         why = "auto.structures leaves cascaded out"
     else:

@@ -23,10 +23,12 @@ def test_from_commands_lag_and_delay_are_learned_in_longer_segments() -> None:
     assert wheels.stream.segment_length == 1.0
 
 
-def test_a_named_basis_is_learned_alone_whatever_structures_are_named() -> None:
-    core = core_settings(make_settings({"basis": "ipem-9"}), "command", HORIZONS)
-    assert [basis.name for basis in core.hypotheses.bases] == ["ipem-9"]
-    assert not core.hypotheses.several
+def test_a_named_basis_is_learned_alone_and_by_way_of_the_wheels_too() -> None:
+    named = core_settings(make_settings({"basis": "ipem-9"}), "command", HORIZONS).hypotheses
+    assert [basis.name for basis in named.bases] == ["ipem-9"]
+    assert (named.cascaded, named.direct, named.baseline) == (True, False, False)
+    settings = make_settings({"basis": "ipem-9", "auto": {"structures": ["joint", "direct", "baseline"]}})
+    assert not core_settings(settings, "command", HORIZONS).hypotheses.several
 
 
 def test_an_unknown_basis_is_refused_before_anything_is_pushed() -> None:

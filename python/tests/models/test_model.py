@@ -31,7 +31,8 @@ Content = dict[str, Any]
 @pytest.fixture(scope="module")
 def model() -> Model:
     log = simulated_log(Drive(seconds=40.0, lag=0.3, delay=0.2))
-    return calibrate(log, input="command", settings=make_settings({"basis": "full-linear-6"})).model
+    settings = make_settings({"basis": "full-linear-6", "auto": {"structures": ["joint"]}})
+    return calibrate(log, input="command", settings=settings).model
 
 
 @pytest.fixture(scope="module")

@@ -22,7 +22,8 @@ CELL = 0.1  # m
 def learned_model() -> Model:
     """Return a model with slip, lag and delay, learned from a simulated drive."""
     log = simulated_log(Drive(seconds=60.0, lag=0.2, delay=0.1))
-    return calibrate(log, input="command", settings=make_settings({"basis": "edd-2"})).model
+    settings = make_settings({"basis": "edd-2", "auto": {"structures": ["joint"]}})
+    return calibrate(log, input="command", settings=settings).model
 
 
 def sliding() -> Model:
