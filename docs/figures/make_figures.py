@@ -65,8 +65,9 @@ def starts(run: Run) -> list[float]:
 def baseline(model: sw.Model) -> sw.Model:
     """Return the model that does at once what is commanded."""
     slip = model.content.slip.model_copy(update={"basis": "none", "lon": [], "lat": [], "ang": []})
-    bare = {"parameters": [], "covariance": [], "dynamics": False, "response": False, "limit_gains": None}
-    return sw.Model(model.content.model_copy(update={"slip": slip, **bare}))
+    without = {"dynamics": False, "clock_offset": False, "response": False, "limit_gains": None}
+    bare = {"slip": slip, "parameters": [], "covariance": [], **without}
+    return sw.Model(model.content.model_copy(update=bare))
 
 
 def draw_paths(axes: Any, run: Run, models: dict[str, sw.Model]) -> None:
