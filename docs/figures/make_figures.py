@@ -66,7 +66,7 @@ def baseline(model: sw.Model) -> sw.Model:
     """Return the model that does at once what is commanded."""
     slip = model.content.slip.model_copy(update={"basis": "none", "lon": [], "lat": [], "ang": []})
     without = {"dynamics": False, "clock_offset": False, "response": False, "limit_gains": None}
-    bare = {"slip": slip, "parameters": [], "covariance": [], **without}
+    bare: dict[str, object] = {"slip": slip, "parameters": [], "covariance": [], **without}
     return sw.Model(model.content.model_copy(update=bare))
 
 
