@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 import slipwise as sw
 from slipwise.calibration import make_settings
 from slipwise.files import write_whole
+from slipwise.live.applied import without_slip
 from slipwise.logs import Log, Run
 from slipwise.reporting.png_picture import drawing_part, small_png
 
@@ -60,14 +61,6 @@ def starts(run: Run) -> list[float]:
         apart = np.linalg.norm(ends[:, None] - ends[taken][None], axis=2).min(axis=1)
         taken.append(int(np.argmax(apart)))
     return [float(times[place]) for place in taken]
-
-
-def baseline(model: sw.Model) -> sw.Model:
-    """Return the model that does at once what is commanded."""
-    slip = model.content.slip.model_copy(update={"basis": "none", "lon": [], "lat": [], "ang": []})
-    without = {"dynamics": False, "clock_offset": False, "response": False, "limit_gains": None}
-    bare: dict[str, object] = {"slip": slip, "parameters": [], "covariance": [], **without}
-    return sw.Model(model.content.model_copy(update=bare))
 
 
 def draw_paths(axes: Any, run: Run, models: dict[str, sw.Model]) -> None:
@@ -122,7 +115,7 @@ def main(folder: Path) -> Path:
         name: sw.calibrate(earlier, input=INPUT, settings=make_settings({"basis": name})).model
         for name in (SIMPLE, LEARNED)
     }
-    models = {PLAIN: baseline(learned[SIMPLE])} | learned
+    models = {PLAIN: without_slip(learned[SIMPLE], "It is drawn beside others.")} | learned
     options = sw.EvaluationOptions(horizons=(HORIZON,), methods=(PLAIN, SIMPLE, LEARNED))
     evaluation = sw.evaluate(log, input=INPUT, options=options)
     drawing_part("pyplot").rcParams.update(
